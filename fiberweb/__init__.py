@@ -1,0 +1,20 @@
+"""Networks of slender fibres as physical reservoirs: simulate them, score what they compute.
+
+    from fiberweb import crosshatch, Scene, simulate, score
+    response = simulate(Scene(crosshatch(4, length=0.5), duration=20.0))
+    print(score(response).c_nl)
+"""
+
+from fiberweb.network import crosshatch, polygon
+from fiberweb.scene import Scene
+from fiberweb.simulation import simulate
+
+__all__ = ["Scene", "crosshatch", "polygon", "score", "simulate"]
+
+
+def __getattr__(name):
+    if name == "score":  # scoring needs packages that a simulation need not load
+        from fiberweb.capacity import score
+
+        return score
+    raise AttributeError(f"module 'fiberweb' has no attribute {name!r}")

@@ -1,0 +1,98 @@
+"""A response as an xarray Dataset, and in and out of NetCDF: the only place that does either."""
+
+from __future__ import annotations
+
+import os
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from fiberweb.drive import spline
+from fiberweb.engines.base import Numerics, Recording
+from fiberweb.engines.jit import source_hash
+from fiberweb.mesh import Mesh
+
+ENGINE_PACKAGES = {"elastica": ("pyelastica", "numba", "numpy")}
+
+
+def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset:
+    """What a run gave, with all that is needed to repeat it.
+
+    Returns:
+        `input(time)` dimensionless; `displacement(time, readout, axis)` in metres; coordinates
+        time (s), axis (x, y), and for each readout kind, rest_x, rest_y (m), fibre and section;
+        attributes status ("ok" or "unstable"), unstable_at (s), engine, elements_per_section,
+        time_step (s), setup, sample_rate (Hz), versions, engine_source (a hash) and the scene as
+        JSON. Nothing in it depends on the clock.
+    """
+    scene = mesh.scene
+    nodes = np.array([readout.nodes for readout in mesh.readouts])
+    weights = np.array([readout.weights for readout in mesh.readouts])
+    rest = np.einsum("rk,rkc->rc", weights, mesh.position[nodes])
+    unstable = recording.unstable_at is not None
+    packages = ENGINE_PACKAGES.get(numerics.engine, ("numba", "numpy"))
+    u = spline(scene.seed, scene.duration, scene.drive_rate)(scene.times)
+    data = xr.Dataset(
+        {
+            "input": ("time", u, {"long_name": "input u", "units": "1"}),
+            "displacement": (
+                ("time", "readout", "axis"),
+                recording.displacement.astype(np.float32),
+                {"long_name": "displacement from rest", "units": "m"},
+            ),
+        },
+        coords={
+            "time": ("time", scene.times, {"units": "s"}),
+            "axis": ["x", "y"],
+            "kind": ("readout", [readout.kind for readout in mesh.readouts]),
+            "rest_x": ("readout", rest[:, 0], {"units": "m"}),
+            "rest_y": ("readout", rest[:, 1], {"units": "m"}),
+            "fibre": ("readout", [readout.fibre for readout in mesh.readouts]),
+            "section": ("readout", [readout.section for readout in mesh.readouts]),
+        },
+        attrs={
+            "status": "unstable" if unstable else "ok",
+            "setup": scene.setup,
+            "scene": scene.to_json(),
+            "engine": numerics.engine,
+            "elements": mesh.elements,
+            "elements_per_section": numerics.elements_per_section or "authors",
+            "time_step": numerics.time_step,
+            "sample_rate": scene.sample_rate,
+            "engine_source": source_hash(),
+            "versions": ", ".join(f"{name} {version(name)}" for name in packages),
+        },
+    )
+    if unstable:
+        data.attrs["unstable_at"] = recording.unstable_at
+    return data
+
+
+def save(data: xr.Dataset, path: str | Path) -> None:
+    """Write a Dataset to NetCDF, deflated, under a temporary name first: a file that exists is
+    whole."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(f".{path.name}.{os.getpid()}")
+    encoding = {
+        name: {"zlib": True, "complevel": 1, "shuffle": True}
+        for name, variable in data.data_vars.items()
+        if variable.dtype.kind == "f" and variable.ndim
+    }
+    try:
+        data.to_netcdf(partial, engine="netcdf4", encoding=encoding)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def load(path: str | Path) -> xr.Dataset:
+    """Read a whole Dataset into memory.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+    """
+    with xr.open_dataset(path, engine="netcdf4") as data:
+        return data.load()

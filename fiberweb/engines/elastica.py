@@ -1,0 +1,210 @@
+"""PyElastica itself: Cosserat rods in three dimensions, the reference.
+
+Built in mm-g-s, as the authors' scripts are: their damper is dimensionally inconsistent and
+means 40 /s on rotations only in those units (in SI the same call gives 4e7 /s).
+"""
+
+from __future__ import annotations
+
+import elastica as ea
+import numpy as np
+from elastica._rotations import _inv_rotate
+from numba import njit
+
+from fiberweb.engines.base import (
+    RUNAWAY,
+    Numerics,
+    Recording,
+    readout_arrays,
+    steps_per_sample,
+)
+from fiberweb.engines.cosserat import refuse
+from fiberweb.engines.kirchhoff import drive_value
+from fiberweb.mesh import Mesh
+
+MM, MICRONEWTON = 1e3, 1e6  # a metre in mm; a newton in g mm / s^2
+GRAM_PER_SECOND = 1e3  # of one N s/m, and of one N/m per second
+
+
+class Simulator(
+    ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.Damping
+):
+    """Rods with everything a fibre network needs."""
+
+
+class Drive(ea.NoForces):
+    """A force pattern times the input u(t)."""
+
+    def __init__(self, nodes, load, coefficients, rate):
+        super().__init__()
+        self.nodes, self.load = nodes, load
+        self.coefficients, self.rate = coefficients, rate
+
+    def apply_forces(self, system, time=0.0):
+        """Add the load at this time."""
+        u = drive_value(self.coefficients, self.rate, time)
+        system.external_forces[:, self.nodes] += u * self.load
+
+
+class Wall(ea.NoForces):
+    """Bending moment of a clamp on the first element: the curvature of the half cell between
+    wall and element centre (see `fiberweb.engines.layout`)."""
+
+    def __init__(self, rod):
+        super().__init__()
+        self.directors = np.repeat(rod.director_collection[..., :1], 2, axis=2)
+        self.stiffness = np.diag(rod.bend_matrix[..., 0]) / (0.5 * rod.rest_lengths[0])
+
+    def apply_torques(self, system, time=0.0):
+        """Turn the first element back towards the wall's direction."""
+        _wall_torque(
+            self.directors, system.director_collection, self.stiffness, system.dilatation,
+            system.external_torques,
+        )  # fmt: skip
+
+
+@njit(cache=True)
+def _wall_torque(pair, directors, stiffness, dilatation, torques):
+    pair[:, :, 1] = directors[:, :, 0]
+    turn = _inv_rotate(pair)
+    e = 0.5 * (1.0 + dilatation[0])
+    for i in range(3):
+        torques[i, 0] -= stiffness[i] * turn[i, 0] / e**3
+
+
+def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recording:
+    """Integrate a mesh with PyElastica.
+
+    Args:
+        mesh: as for every engine.
+        numerics: as for every engine.
+        disturbance: velocity (m/s) out of the plane given to the driven nodes at the start.
+
+    Raises:
+        ValueError: crossings without compliance.
+    """
+    simulator, rods, step, per_sample = assemble(mesh, numerics)
+    for rod, nodes in _driven(mesh, rods):
+        rod.velocity_collection[2, nodes] += disturbance * MM
+    nodes, weights = readout_arrays(mesh)
+    rest = mesh.position
+    limit = RUNAWAY * mesh.scene.wave_speed * MM
+    out = np.full((mesh.scene.samples, len(nodes), 2), np.nan)
+    stepper, time = ea.PositionVerlet(), 0.0
+    for sample in range(mesh.scene.samples):
+        at = np.concatenate([rod.position_collection[:2].T for rod in rods]) / MM - rest
+        out[sample] = np.einsum("rk,rkc->rc", weights, at[nodes])
+        fastest = max(np.abs(rod.velocity_collection).max() for rod in rods)
+        if not fastest < limit:
+            out[sample:] = np.nan
+            return Recording(out, sample / mesh.scene.sample_rate)
+        if sample + 1 < mesh.scene.samples:
+            time = run_steps(simulator, stepper, time, step, per_sample)
+    return Recording(out, None)
+
+
+def run_steps(simulator, stepper, time: float, step: float, count: int) -> float:
+    """Take `count` steps; returns the time reached (s)."""
+    with np.errstate(all="ignore"):  # a run that blows up is recorded, not warned about
+        for _ in range(count):
+            time = stepper.step(simulator, time, step)
+    return time
+
+
+def assemble(mesh: Mesh, numerics: Numerics):
+    """The simulator, its rods, the step (s) and the steps per sample."""
+    refuse(mesh)
+    scene = mesh.scene
+    per_sample = steps_per_sample(scene, numerics.time_step)
+    step = 1.0 / (scene.sample_rate * per_sample)
+    simulator = Simulator()
+    rods = [_rod(mesh, fibre) for fibre in range(len(mesh.first) - 1)]
+    for rod in rods:
+        simulator.append(rod)
+    for fibre, rod in enumerate(rods):
+        _hold(simulator, mesh, fibre, rod)
+        _pull(simulator, mesh, fibre, rod)
+        _damp(simulator, mesh, rod, step)
+    for rod, nodes in _driven(mesh, rods):
+        load = mesh.load[mesh.first[rods.index(rod)] + nodes]
+        simulator.add_forcing_to(rod).using(
+            Drive,
+            nodes=nodes,
+            load=MICRONEWTON * np.column_stack([load, np.zeros(len(load))]).T,
+            coefficients=mesh.drive,
+            rate=scene.drive_rate,
+        )
+    fibre_of = np.repeat(np.arange(len(rods)), np.diff(mesh.first))
+    for (a, b), k, nu in zip(mesh.joints, mesh.joint_stiffness, mesh.joint_damping):
+        simulator.connect(
+            rods[fibre_of[a]], rods[fibre_of[b]],
+            int(a - mesh.first[fibre_of[a]]), int(b - mesh.first[fibre_of[b]]),
+        ).using(ea.FreeJoint, k=k * GRAM_PER_SECOND, nu=nu * GRAM_PER_SECOND)  # fmt: skip
+    simulator.finalize()
+    return simulator, rods, step, per_sample
+
+
+def _rod(mesh: Mesh, fibre: int):
+    nodes = MM * mesh.position[mesh.first[fibre] : mesh.first[fibre + 1]]
+    span = nodes[-1] - nodes[0]
+    scene = mesh.scene
+    return ea.CosseratRod.straight_rod(
+        n_elements=len(nodes) - 1,
+        start=np.array([*nodes[0], 0.0]),
+        direction=np.array([*span, 0.0]) / np.linalg.norm(span),
+        normal=np.array([0.0, 0.0, 1.0]),
+        base_length=np.linalg.norm(span),
+        base_radius=0.5 * scene.diameter * MM,
+        density=scene.density * 1e3 / MM**3,
+        youngs_modulus=scene.youngs_modulus,  # 1 Pa is 1 g / (mm s^2)
+        shear_modulus=scene.youngs_modulus / 3.0,
+        position=np.column_stack([nodes, np.zeros(len(nodes))]).T,
+    )
+
+
+def _hold(simulator, mesh: Mesh, fibre: int, rod) -> None:
+    held = mesh.held[mesh.first[fibre] : mesh.first[fibre + 1]]
+    for node in np.flatnonzero(held.any(axis=1)):
+        simulator.constrain(rod).using(
+            ea.GeneralConstraint,
+            constrained_position_idx=(int(node),),
+            translational_constraint_selector=np.array([*held[node], True]),
+        )
+    if mesh.clamped[fibre]:
+        simulator.add_forcing_to(rod).using(Wall, rod=rod)
+    else:
+        simulator.constrain(rod).using(
+            ea.GeneralConstraint,
+            constrained_director_idx=(0,),
+            rotational_constraint_selector=np.array([True, True, False]),
+        )
+
+
+def _pull(simulator, mesh: Mesh, fibre: int, rod) -> None:
+    far = mesh.pull[mesh.first[fibre + 1] - 1]
+    if far.any():
+        simulator.add_forcing_to(rod).using(
+            ea.EndpointForces,
+            start_force=np.zeros(3),
+            end_force=MICRONEWTON * np.array([*far, 0.0]),
+            ramp_up_time=max(mesh.scene.tension_ramp, 1e-12),
+        )
+
+
+def _damp(simulator, mesh: Mesh, rod, step: float) -> None:
+    scene = mesh.scene
+    kind = "damping_constant" if scene.setup == "published" else "uniform_damping_constant"
+    simulator.dampen(rod).using(
+        ea.AnalyticalLinearDamper, time_step=step, **{kind: scene.damping}
+    )
+    if scene.filter_order:
+        simulator.dampen(rod).using(ea.LaplaceDissipationFilter, filter_order=scene.filter_order)
+
+
+def _driven(mesh: Mesh, rods):
+    """(rod, its loaded nodes) for each rod that is driven."""
+    for fibre, rod in enumerate(rods):
+        load = mesh.load[mesh.first[fibre] : mesh.first[fibre + 1]]
+        nodes = np.flatnonzero(np.abs(load).any(axis=1))
+        if len(nodes):
+            yield rod, nodes

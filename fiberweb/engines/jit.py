@@ -1,0 +1,43 @@
+"""How the kernels are compiled, and where the result is kept.
+
+Compiled kernels are cached on disk in a folder named by a hash of the engines' sources: Numba
+keys a cache entry by the file of the function itself, so an edited callee would otherwise
+leave a stale caller behind.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from pathlib import Path
+
+HERE = Path(__file__).parent
+PHYSICS = ("mesh.py", "drive.py", "scene.py", "network.py")
+
+
+def source_hash() -> str:
+    """Hash of everything that a trajectory depends on in this package."""
+    files = sorted(HERE.glob("*.py")) + [HERE.parent / name for name in PHYSICS]
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def _cache_folder() -> Path:
+    base = os.environ.get("FIBERWEB_CACHE") or Path.home() / ".cache" / "fiberweb"
+    return Path(base) / source_hash()
+
+
+os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_folder()))
+
+import llvmlite.binding as llvm  # noqa: E402  (the cache folder must be set before Numba loads)
+from numba import njit  # noqa: E402
+
+# A pass over n arrays needs up to n^2 checks that none overlap; LLVM gives up at 8 and then
+# leaves square roots and divisions scalar.
+llvm.set_option("", "-runtime-memory-check-threshold=500")
+
+# Division by zero gives inf, as in numpy: a test in the loop would keep it scalar. Contraction
+# allows fused multiply-add and nothing else, so results repeat to the bit.
+kernel = njit(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)

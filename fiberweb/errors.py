@@ -1,0 +1,29 @@
+"""One clear sentence for each thing a user can get wrong."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+
+def unknown_key(key: str, known, where: str = "") -> str:
+    """The sentence for a key that does not exist, with the nearest one that does."""
+    near = get_close_matches(str(key), [str(k) for k in known], n=1, cutoff=0.0)
+    return f"unknown key {where}{key!r}: the nearest valid key is {where}{near[0]!r}"
+
+
+def sentence(error, where: str = "", known=()) -> str:
+    """The first problem of a pydantic ValidationError as one sentence.
+
+    Args:
+        error: pydantic.ValidationError.
+        where: the key that was validated, for instance "scene".
+        known: valid keys at the level of the error, used for unknown ones.
+    """
+    problem = error.errors()[0]
+    *above, key = [part for part in (where, *map(str, problem["loc"])) if part]
+    if problem["type"] == "extra_forbidden":
+        return unknown_key(key, known, "".join(f"{part}." for part in above))
+    if problem["type"] == "value_error":
+        return problem["msg"].removeprefix("Value error, ")
+    text = problem["msg"]
+    return f"{'.'.join([*above, key])} = {problem['input']!r}: {text[0].lower()}{text[1:]}"

@@ -1,0 +1,184 @@
+"""Fibres and where they cross: the geometry of a network, free of material and mesh.
+
+Every fibre is straight at rest and runs from its *near* end, the one a scene holds,
+to its *far* end, the one a scene pulls. Lengths are in metres.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+
+COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
+
+
+@dataclass(frozen=True)
+class Network:
+    """Straight fibres and their crossings.
+
+    Attributes:
+        topology: "crosshatch" or "polygon".
+        n: fibres in each direction, or vertices of the polygon.
+        length: outer dimension (m): fibre length, or diameter of the circumscribed circle.
+        spacing: length (m) of the driven section; s of Eqs. 3 and 4.
+        diagonals: "all" or "skip-one" for a polygon, "" for a crosshatch.
+        fibres: near and far end of each fibre, shape (fibres, 2, 2), m.
+        stations: for each fibre the crossings on it from near to far end, as pairs
+            (index of the crossing, distance from the near end in m).
+        crossings: where fibres cross, shape (crossings, 2), m.
+        driven_fibre: index of the fibre that is shaken.
+        driven_distance: distance of the driven point from that fibre's near end (m).
+    """
+
+    topology: str
+    n: int
+    length: float
+    spacing: float
+    diagonals: str
+    fibres: np.ndarray = field(repr=False, compare=False)
+    stations: tuple[tuple[tuple[int, float], ...], ...] = field(repr=False, compare=False)
+    crossings: np.ndarray = field(repr=False, compare=False)
+    driven_fibre: int = field(repr=False)
+    driven_distance: float = field(repr=False)
+
+    @property
+    def fibre_lengths(self) -> np.ndarray:
+        """Rest length of each fibre, shape (fibres,), m."""
+        return np.linalg.norm(self.fibres[:, 1] - self.fibres[:, 0], axis=1)
+
+    def sections(self, fibre: int) -> np.ndarray:
+        """Ends of the sections of a fibre, from 0 to its length, shape (crossings + 2,), m."""
+        inner = [distance for _, distance in self.stations[fibre]]
+        return np.array([0.0, *inner, self.fibre_lengths[fibre]])
+
+    def spec(self) -> dict:
+        """What `from_spec` needs to build the network again."""
+        spec = {"topology": self.topology, "n": self.n, "length": self.length}
+        return spec | ({"diagonals": self.diagonals} if self.diagonals else {})
+
+
+def crosshatch(n: int, length: float | None = None, spacing: float | None = None) -> Network:
+    """N + N fibres crossing at right angles, with end stubs as long as a section.
+
+    Fibres 0..N-1 are horizontal from the bottom up and run from left to right; N..2N-1 are
+    vertical from the left and run upwards. Paper, section "Fiber network setup"; the fibre
+    length is (N + 1) spacings.
+
+    Args:
+        n: fibres in each direction, at least 2.
+        length: fibre length (m); give this or `spacing`.
+        spacing: distance between neighbouring parallel fibres (m).
+
+    Raises:
+        ValueError: n below 2, neither or both of length and spacing, or one not positive.
+    """
+    _check_count("n", n, 2, "a crosshatch has at least 2 fibres in each direction")
+    if (length is None) == (spacing is None):
+        raise ValueError(
+            f"crosshatch takes either length or spacing, not length = {length} and "
+            f"spacing = {spacing}"
+        )
+    name, value = ("length", length) if spacing is None else ("spacing", spacing)
+    _check_positive(name, value)
+    length = length if spacing is None else spacing * (n + 1)
+    spacing = length / (n + 1)
+    at = spacing * np.arange(1, n + 1)
+    horizontal = [[[0.0, y], [length, y]] for y in at]
+    vertical = [[[x, 0.0], [x, length]] for x in at]
+    # crossing index = row * n + column
+    stations = [tuple((row * n + col, at[col]) for col in range(n)) for row in range(n)]
+    stations += [tuple((row * n + col, at[row]) for row in range(n)) for col in range(n)]
+    crossings = np.array([[x, y] for y in at for x in at])
+    return Network(
+        "crosshatch", n, length, spacing, "", np.array(horizontal + vertical),
+        tuple(stations), crossings, n // 2, length / 2,
+    )  # fmt: skip
+
+
+def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
+    """Fibres along the diagonals of a regular N-gon, N even.
+
+    Fibres 0..N/2-1 are the diameters; the first lies along x. The driven point is on it,
+    halfway between the centre and the next crossing towards its far end, and that section is
+    the s of Eq. 3.
+
+    Args:
+        n: vertices, an even number of at least 6.
+        diameter: of the circumscribed circle (m).
+        diagonals: "all" joins every pair of non-neighbours (the paper's text), "skip-one"
+            only the diameters and the vertices two apart (the authors' code).
+
+    Raises:
+        ValueError: n odd or below 6, diameter not positive, or another word in diagonals.
+    """
+    _check_count("n", n, 6, "a polygon has an even number of at least 6 vertices")
+    if n % 2:
+        raise ValueError(f"n = {n}: a polygon has an even number of vertices, for its diameters")
+    _check_positive("diameter", diameter)
+    if diagonals not in ("all", "skip-one"):
+        raise ValueError(f"diagonals = {diagonals!r} is not one of 'all', 'skip-one'")
+    # vertex 0 at -x, so that the first diameter runs from left to right
+    angle = np.pi + 2 * np.pi * np.arange(n) / n
+    vertex = 0.5 * diameter * np.column_stack([np.cos(angle), np.sin(angle)])
+    pairs = [(i, i + n // 2) for i in range(n // 2)]
+    if diagonals == "skip-one":
+        pairs += [(i, (i + 2) % n) for i in range(n)] if n > 4 else []
+    else:
+        pairs += [
+            (i, j) for i, j in combinations(range(n), 2)
+            if 2 <= j - i <= n - 2 and j - i != n // 2
+        ]  # fmt: skip
+    fibres = np.array([[vertex[i], vertex[j]] for i, j in pairs])
+    crossings, stations = _cross(fibres)
+    centre = 0.5 * diameter
+    spacing = min(d - centre for _, d in stations[0] if d - centre > COINCIDENT)
+    return Network(
+        "polygon", n, diameter, spacing, diagonals, fibres, stations, crossings,
+        0, centre + spacing / 2,
+    )  # fmt: skip
+
+
+def from_spec(spec: dict) -> Network:
+    """The network whose `spec()` this is."""
+    spec = dict(spec)
+    if spec.pop("topology") == "crosshatch":
+        return crosshatch(**spec)
+    return polygon(spec["n"], diameter=spec["length"], diagonals=spec["diagonals"])
+
+
+def _cross(fibres: np.ndarray):
+    """Interior crossings of straight fibres; those through one point are one crossing."""
+    start, span = fibres[:, 0], fibres[:, 1] - fibres[:, 0]
+    length = np.linalg.norm(span, axis=1)
+    points: list[np.ndarray] = []
+    on_fibre: list[dict[int, float]] = [{} for _ in fibres]
+    for a, b in combinations(range(len(fibres)), 2):
+        determinant = span[a, 0] * span[b, 1] - span[a, 1] * span[b, 0]
+        if abs(determinant) < 1e-12 * length[a] * length[b]:
+            continue
+        gap = start[b] - start[a]
+        at_a = (gap[0] * span[b, 1] - gap[1] * span[b, 0]) / determinant
+        at_b = (gap[0] * span[a, 1] - gap[1] * span[a, 0]) / determinant
+        if not (1e-9 < at_a < 1 - 1e-9 and 1e-9 < at_b < 1 - 1e-9):
+            continue  # they meet at a vertex, or not at all
+        point = start[a] + at_a * span[a]
+        near = [i for i, p in enumerate(points) if np.linalg.norm(p - point) < COINCIDENT]
+        index = near[0] if near else len(points)
+        if not near:
+            points.append(point)
+        on_fibre[a].setdefault(index, at_a * length[a])
+        on_fibre[b].setdefault(index, at_b * length[b])
+    stations = tuple(tuple(sorted(f.items(), key=lambda item: item[1])) for f in on_fibre)
+    return np.array(points), stations
+
+
+def _check_count(name: str, value, least: int, rule: str) -> None:
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
+        raise ValueError(f"{name} = {value!r}: {rule}")
+
+
+def _check_positive(name: str, value) -> None:
+    if isinstance(value, (str, bool)) or not 0 < value < np.inf:
+        raise ValueError(f"{name} = {value!r} must be a positive length in metres")

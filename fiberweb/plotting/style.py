@@ -1,0 +1,118 @@
+"""How every figure looks: a journal column, colour-blind-safe maps, the same bytes every time.
+
+Figures are `matplotlib.figure.Figure` objects made without pyplot: they need no display, write
+through the Agg backend, and nothing outside `applied` changes matplotlib's global state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from cmcrameri import cm
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure, FigureBase
+
+SINGLE, DOUBLE = 88.0, 180.0  # column widths, mm
+MM = 1 / 25.4  # inch
+RESOLUTION = 300  # dpi
+
+INK, GREY, FAINT = "#1a1a1a", "#6e6e6e", "#bdbdbd"
+DRIVE = "#c8442c"  # the driven point, and nothing else
+SEQUENTIAL = cm.batlow  # magnitudes
+DIVERGING = cm.vik  # signed differences
+UNSTABLE = {"marker": "X", "color": "#b2182b", "markersize": 5, "linestyle": "none"}
+
+RC = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7,
+    "axes.titlesize": 7,
+    "axes.labelsize": 7,
+    "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5,
+    "legend.fontsize": 6.5,
+    "figure.titlesize": 8,
+    "mathtext.fontset": "dejavusans",
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.labelpad": 2.0,
+    "axes.titlepad": 3.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "text.color": INK,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.5,
+    "legend.frameon": False,
+    "legend.handlelength": 1.6,
+    "legend.borderaxespad": 0.2,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "pdf.fonttype": 42,  # text stays text in the PDF
+}
+
+
+def applied() -> AbstractContextManager:
+    """Context in which a figure is made and saved with this style."""
+    return mpl.rc_context(RC)
+
+
+def figure(width: float, height: float) -> Figure:
+    """An empty figure with constrained layout; width and height in mm."""
+    made = Figure(figsize=(width * MM, height * MM), layout="constrained")
+    FigureCanvasAgg(made)
+    made.get_layout_engine().set(w_pad=2 * MM, h_pad=1 * MM, wspace=0.03, hspace=0.03)
+    return made
+
+
+def colours(count: int) -> np.ndarray:
+    """Distinct colours in the order of a magnitude, dark to light, shape (count, 4).
+
+    The lightest fifth of the map is left out: it does not show on white as a line.
+    """
+    return SEQUENTIAL(np.linspace(0.0, 0.8, count) if count > 1 else np.zeros(1))
+
+
+def letter(part: FigureBase, name: str, title: str) -> None:
+    """Panel letter and title at the upper left of a figure or subfigure."""
+    part.suptitle(
+        rf"$\mathbf{{{name}}}$   {title}", x=0.005, ha="left", fontsize=RC["figure.titlesize"]
+    )
+
+
+def mark_unstable(ax: Axes, places: Sequence[float]) -> None:
+    """An X just above the axis at each x where a run was unstable and has no value."""
+    if len(places):
+        ax.plot(
+            places, [0.04] * len(places), transform=ax.get_xaxis_transform(), zorder=5,
+            gid="unstable", **UNSTABLE,
+        )  # fmt: skip
+
+
+def save(made: Figure, path: str | Path) -> tuple[Path, Path]:
+    """Write the figure as PNG (300 dpi) and as PDF, with the same bytes for the same figure.
+
+    Args:
+        made: from `figure`.
+        path: with or without .png or .pdf; folders are made.
+
+    Returns:
+        Paths of the PNG and of the PDF.
+    """
+    path = Path(path)
+    stem = path.stem if path.suffix in (".png", ".pdf") else path.name  # "s100.0mm" has a dot
+    path.parent.mkdir(parents=True, exist_ok=True)
+    png, pdf = path.with_name(f"{stem}.png"), path.with_name(f"{stem}.pdf")
+    made.savefig(png, dpi=RESOLUTION)
+    made.savefig(pdf, metadata={"CreationDate": None})
+    return png, pdf

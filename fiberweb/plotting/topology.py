@@ -1,0 +1,224 @@
+"""Fig. 1: capacities of crosshatch and polygonal networks, and example computations.
+
+Drawing only: every number comes from the tables and the traces.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
+
+from fiberweb.network import Network, crosshatch, polygon
+from fiberweb.plotting import style
+from fiberweb.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DRAWN = {"crosshatch": (2, 4, 8), "polygon": (6, 8, 12)}  # schematics, where they were run
+TITLES = {"crosshatch": "Crosshatch networks", "polygon": "Polygonal networks"}
+TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resolved in a third
+CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
+FLOORS = {"u": "$u$", "derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$"}
+LABEL_GAP = 0.09  # floors closer than this share a label
+
+
+def draw(
+    table: pd.DataFrame,
+    curves: pd.DataFrame,
+    floors: pd.DataFrame | None,
+    traces: xr.Dataset | None,
+    setup: str,
+    path: str | Path,
+) -> Figure:
+    """Draw Fig. 1 for one setup and write it as PNG and PDF.
+
+    Args:
+        table: from `tables.topology`; rows of other setups are left out. A run whose status is
+            "unstable" is drawn as an X.
+        curves: from `tables.curves`, of the same runs.
+        floors: from `tables.floors`, or None.
+        traces: ``target`` and ``prediction`` (trace, time), ``c`` (trace), with the trace names
+            and time in s as coordinates, NaN where a target's test part has not begun; attr
+            ``scene`` names the network. None leaves panel d out.
+        setup: "described" or "published".
+        path: of the figure; both suffixes are written beside each other.
+
+    Returns:
+        The figure.
+
+    Raises:
+        ValueError: the table has no run of this setup.
+    """
+    table, curves = (frame[frame["setup"] == setup] for frame in (table, curves))
+    if table.empty:
+        raise ValueError(f"the topology table has no run of the {setup} setup to draw")
+    present = [name for name in TITLES if (table["topology"] == name).any()]
+    heights = [30.0] + [46.0] * len(present) + ([48.0] if traces is not None else [])
+    with style.applied():
+        figure = style.figure(style.DOUBLE, sum(heights))
+        rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
+        letters = iter("abcd")
+        style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
+        _networks(rows[0], table, setup)
+        for row, topology in zip(rows[1:], present, strict=False):
+            style.letter(row, next(letters), TITLES[topology])
+            runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
+            _capacities(row, runs, points, floors)
+        if traces is not None:
+            style.letter(rows[-1], next(letters), f"Example computations{_network_name(traces)}")
+            _traces(rows[-1], traces)
+        style.save(figure, path)
+    return figure
+
+
+def _networks(part: SubFigure, table: pd.DataFrame, setup: str) -> None:
+    """Schematics of a few networks side by side, each to its own scale."""
+    drawn = []
+    for topology, preferred in DRAWN.items():
+        ran = sorted(table.loc[table["topology"] == topology, "n"].unique())
+        drawn += [(topology, n) for n in ([n for n in preferred if n in ran] or ran[:3])]
+    axes = part.subplots(1, len(drawn) + 1, width_ratios=[1] * len(drawn) + [1.5])
+    for ax, (topology, n) in zip(axes, drawn, strict=False):
+        network = _network(topology, int(n), setup)
+        _schematic(ax, network, readouts=n == min(ran_n for _, ran_n in drawn))
+        ax.set_title(_label(topology, n))
+    handles = [
+        Line2D([], [], color=style.DRIVE, marker=r"$\updownarrow$", ls="", ms=7),
+        Line2D([], [], color=style.INK, marker="o", ls="", ms=2.4),
+        Line2D([], [], color=style.INK, marker="o", mfc="white", mew=0.6, ls="", ms=2.6),
+    ]
+    axes[-1].axis("off")
+    axes[-1].legend(handles, ["driven point", "readout: crossing", "readout: midpoint"], loc="center left")
+
+
+def _network(topology: str, n: int, setup: str) -> Network:
+    if topology == "crosshatch":
+        return crosshatch(n, length=1.0)
+    return polygon(n, diameter=1.0, diagonals="skip-one" if setup == "published" else "all")
+
+
+def _schematic(ax: Axes, network: Network, readouts: bool) -> None:
+    ax.add_collection(LineCollection(network.fibres, colors=style.GREY, linewidths=0.5))
+    near, far = network.fibres[network.driven_fibre]
+    driven = near + (far - near) * network.driven_distance / np.linalg.norm(far - near)
+    if readouts:
+        middle = np.concatenate([_midpoints(network, fibre) for fibre in range(len(network.fibres))])
+        ax.plot(*middle.T, "o", ms=2.6, mfc="white", mec=style.INK, mew=0.6)
+        ax.plot(*network.crossings.T, "o", ms=2.4, color=style.INK)
+    ax.plot(*driven, marker=r"$\updownarrow$", ms=8, color=style.DRIVE, zorder=4)
+    ax.set_aspect("equal")
+    ax.margins(0.04)
+    ax.axis("off")
+
+
+def _midpoints(network: Network, fibre: int) -> np.ndarray:
+    """Midpoints of a fibre's sections, shape (sections, 2)."""
+    ends = network.sections(fibre)
+    near, far = network.fibres[fibre]
+    share = 0.5 * (ends[1:] + ends[:-1]) / ends[-1]
+    return near + share[:, None] * (far - near)
+
+
+def _capacities(
+    part: SubFigure, runs: pd.DataFrame, points: pd.DataFrame, floors: pd.DataFrame | None
+) -> None:
+    """c over order and over lag for each N, then the totals over N."""
+    by_order, by_lag, nonlinear, memory = part.subplots(1, 4, width_ratios=[1.15, 1.15, 1, 1])
+    sizes = sorted(runs["n"].unique())
+    colour = dict(zip(sizes, style.colours(len(sizes)), strict=True))
+    unstable = set(runs.loc[runs["status"] == "unstable", "n"])
+    for n in sizes:
+        if n in unstable:
+            continue
+        curve = points[points["n"] == n]
+        for ax, target, marker in ((by_order, "order", "o"), (by_lag, "lag", "")):
+            at = curve[curve["target"] == target].sort_values("at")
+            ax.plot(at["at"], at["c"], color=colour[n], marker=marker, ms=2.4)
+    by_order.set(xlabel="Legendre order", ylabel="capacity c", xticks=range(2, 11, 2))
+    by_lag.set(xlabel="recall lag (s)")
+    by_lag.set_xlim(left=0)
+    handles = [
+        Line2D([], [], color=colour[n]) if n not in unstable else Line2D([], [], **style.UNSTABLE)
+        for n in sizes
+    ]
+    labels = [_label(runs["topology"].iloc[0], n) for n in sizes]
+    by_lag.legend(handles, labels, loc="upper right", labelspacing=0.25)
+    for ax, name, symbol in ((nonlinear, "c_nl", "$C_{nl}$"), (memory, "c_m", "$C_m$")):
+        _total(ax, runs, name, colour)
+        if floors is not None:
+            _floors(ax, floors, name)
+        ax.set(xlabel="N", ylabel=symbol, xticks=sizes)
+    for ax in (by_order, by_lag, nonlinear, memory):
+        ax.set_ylim(*CAPACITY_AXIS)
+
+
+def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
+    """C_nl or C_m over N: test with its standard error, training as open markers."""
+    runs = runs.sort_values("n")
+    stable = runs[runs["status"] != "unstable"]
+    ax.plot(stable["n"], stable[name], color=style.FAINT, lw=0.8, zorder=1)
+    ax.plot(stable["n"], stable[f"{name}_train"], "_", color=style.GREY, ms=5, mew=1, zorder=2)
+    for run in stable.itertuples():
+        ax.errorbar(
+            run.n, getattr(run, name), yerr=getattr(run, f"{name}_se"), color=colour[run.n],
+            marker="o", capsize=1.5, elinewidth=0.8, zorder=3,
+        )  # fmt: skip
+    style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
+    ax.margins(x=0.08)
+
+
+def _floors(ax: Axes, floors: pd.DataFrame, name: str) -> None:
+    """What readouts of the input alone score, labelled beside the axes."""
+    groups: list[list[tuple[float, str]]] = []
+    for value, readout in sorted(zip(floors[name], floors["readout"], strict=True)):
+        ax.axhline(value, color=style.GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)
+        if groups and value - groups[-1][-1][0] < LABEL_GAP:
+            groups[-1].append((value, readout))
+        else:
+            groups.append([(value, readout)])
+    for group in groups:
+        labels = [FLOORS.get(readout, readout) for _, readout in reversed(group)]
+        ax.annotate(
+            "\n".join(labels), (1.02, float(np.mean([value for value, _ in group]))),
+            xycoords=("axes fraction", "data"), va="center", fontsize=6, color=style.GREY,
+        )  # fmt: skip
+
+
+def _traces(part: SubFigure, traces: xr.Dataset) -> None:
+    """Target (dashed) and prediction over a few seconds of the test part, one axes a trace."""
+    known = np.isfinite(traces["target"].values).all(axis=0)
+    time = traces["time"].values
+    start = time[known][0]
+    shown = known & (time < start + TRACE_SECONDS)
+    columns = -(-traces.sizes["trace"] // 2)
+    axes = part.subplots(2, columns, sharex=True, sharey=True, squeeze=False)
+    colours = style.colours(4)
+    for ax, name in zip(axes.T.ravel(), traces["trace"].values, strict=False):
+        one = traces.sel(trace=name)
+        legendre = str(name).startswith("P")
+        ax.plot(time[shown], one["prediction"].values[shown], color=colours[1 if legendre else 3])
+        ax.plot(time[shown], one["target"].values[shown], "--", color="black", lw=0.7)
+        title = f"$P_{{{name[1:]}}}(u(t))$" if legendre else f"$u(t - {name.split()[0]}$ ms$)$"
+        ax.set_title(f"{title}   c = {float(one['c']):.3f}")
+        ax.set(ylim=(-1.25, 1.25), xlim=(start, start + TRACE_SECONDS))
+    for ax in axes[-1]:
+        ax.set_xlabel("time (s)")
+
+
+def _network_name(traces: xr.Dataset) -> str:
+    if "scene" not in traces.attrs:
+        return ""
+    network = Scene.from_json(traces.attrs["scene"]).network
+    return f", {_label(network.topology, network.n)} {network.topology}"
+
+
+def _label(topology: str, n: int) -> str:
+    return f"{n}×{n}" if topology == "crosshatch" else f"N = {n}"

@@ -1,0 +1,159 @@
+"""Tables: one row a run (or a point of a run's curve), as CSV with the same bytes every time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import pandas as pd
+
+from fiberweb import capacity, dataset
+from fiberweb.scene import Scene
+
+SCALARS = ("c_nl", "c_m", "c_nl_train", "c_m_train", "c_nl_raw", "c_m_raw", "c_nl_se", "c_m_se")
+COLUMNS = (
+    "setup", "topology", "n", "spacing_m", "force_N", "tension_N", "buckling_number",
+    *SCALARS, "status", "run",
+)  # fmt: skip
+CURVE_COLUMNS = ("setup", "topology", "n", "target", "at", "c", "c_train", "c_raw", "run")
+FLOOR_COLUMNS = ("readout", "c_nl", "c_m")
+# Rows are put in this order, so that a table does not depend on the order in which runs end.
+SORTED_BY = ("setup", "topology", "n", "spacing_m", "force_N", "tension_N", "run", "target", "at")
+FLOAT_FORMAT = "%.10g"
+
+
+def topology(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
+    """The topology study (Fig. 1): one row a run, the columns of `COLUMNS` and no other."""
+    return rows(capacity_paths)
+
+
+def rows(capacity_paths: Iterable[str | Path], **extra: object) -> pd.DataFrame:
+    """One row for each capacity file.
+
+    Args:
+        capacity_paths: files that hold the output of `capacity.score` with the attrs ``scene``,
+            ``run`` and ``status``.
+        **extra: columns that a study adds after `COLUMNS`: a constant, or a function of the
+            run's (Scene, capacity Dataset), such as ``length_m=lambda scene, _:
+            scene.network.length``.
+
+    Returns:
+        A frame of `COLUMNS` and the extra ones; spacing in m, forces in N, capacities
+        dimensionless and NaN for an unstable run.
+    """
+    return _frame([_row(*_read_run(path), extra) for path in capacity_paths], (*COLUMNS, *extra))
+
+
+def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
+    """Capacity of every single target, long: one row for each run and target.
+
+    Columns: `CURVE_COLUMNS`. ``target`` is "order" (``at`` is the Legendre order) or "lag"
+    (``at`` is the lag in s); ``c`` is the headline value on the test part.
+    """
+    records = []
+    for path in capacity_paths:
+        scene, scored = _read_run(path)
+        run = (scene.setup, scene.network.topology, scene.network.n)
+        for target, name in (("order", "nonlinear"), ("lag", "memory")):
+            at = scored[target].values.astype(float)  # orders and lags share a column
+            c = (scored[name + part].values for part in ("", "_train", "_raw"))
+            records += [
+                (*run, target, *point, scored.attrs["run"]) for point in zip(at, *c, strict=True)
+            ]
+    return _frame(records, CURVE_COLUMNS)
+
+
+def floors(
+    response_path: str | Path, alpha: float = 0.01, scoring: str | None = None, **options: object
+) -> pd.DataFrame:
+    """What readouts made of the input alone would score: the floor of every capacity.
+
+    Args:
+        response_path: a response; of it only the input and its sample rate are used, and every
+            run of a study has the same.
+        alpha, scoring, **options: as for `capacity.score_arrays`; scoring None is the one of
+            the response's setup.
+
+    Returns:
+        A frame of `FLOOR_COLUMNS`, readout being "u", "derivatives" or "powers".
+    """
+    response = dataset.load(response_path)
+    if scoring is None:
+        scoring = "published" if response.attrs["setup"] == "published" else "clean"
+    sample_rate = Scene.from_json(response.attrs["scene"]).sample_rate
+    u = response["input"].values
+    records = []
+    for name, readouts in capacity.trivial_readouts(u, sample_rate).items():
+        scored = capacity.score_arrays(u, readouts, sample_rate, scoring, alpha, **options)
+        records.append((name, scored.c_nl, scored.c_m))
+    return _frame(records, FLOOR_COLUMNS)
+
+
+def merge(paths: Iterable[str | Path]) -> pd.DataFrame:
+    """The rows of several tables with the same columns, such as one table of each setup.
+
+    Raises:
+        ValueError: no table, or tables whose columns are not the same.
+    """
+    frames = {Path(path): read(path) for path in paths}
+    if not frames:
+        raise ValueError("there is no table to merge; give at least one path")
+    (first, head), *others = frames.items()
+    for path, frame in others:
+        if list(frame.columns) != list(head.columns):
+            raise ValueError(
+                f"{path} has the columns {', '.join(frame.columns)} but {first} has "
+                f"{', '.join(head.columns)}; merge tables of one kind only"
+            )
+    filled = [frame for frame in frames.values() if len(frame)] or [head]
+    return _sorted(pd.concat(filled, ignore_index=True))
+
+
+def write(frame: pd.DataFrame, path: str | Path) -> None:
+    """Write a table as CSV: same frame, same bytes, however its rows were ordered."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial")
+    # encoding and newline are fixed because both would follow the machine
+    with partial.open("w", encoding="utf-8", newline="") as file:
+        _sorted(frame).to_csv(file, index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+    partial.replace(path)  # a killed job leaves no half table under the right name
+
+
+def read(path: str | Path) -> pd.DataFrame:
+    """The table that `write` wrote; an empty cell is NaN."""
+    return pd.read_csv(path)
+
+
+def _read_run(path):
+    """(Scene, capacity Dataset) of one capacity file."""
+    scored = dataset.load(path)
+    return Scene.from_json(scored.attrs["scene"]), scored
+
+
+def _row(scene: Scene, scored, extra: dict[str, object]) -> dict:
+    row = {
+        "setup": scene.setup,
+        "topology": scene.network.topology,
+        "n": scene.network.n,
+        "spacing_m": scene.network.spacing,
+        "force_N": scene.force,
+        "tension_N": scene.tension,
+        "buckling_number": scene.buckling_number,
+        "status": scored.attrs["status"],
+        "run": scored.attrs["run"],
+    }
+    row |= {name: float(scored[name]) for name in SCALARS}
+    for name, value in extra.items():
+        row[name] = value(scene, scored) if callable(value) else value
+    return row
+
+
+def _frame(records: list, columns: tuple[str, ...]) -> pd.DataFrame:
+    return _sorted(pd.DataFrame(records, columns=list(columns)))
+
+
+def _sorted(frame: pd.DataFrame) -> pd.DataFrame:
+    """Rows in the order of `SORTED_BY`; rows that are equal in it keep theirs."""
+    keys = [name for name in SORTED_BY if name in frame.columns]
+    return frame.sort_values(keys, kind="stable", ignore_index=True) if keys else frame
