@@ -1,8 +1,8 @@
 """Networks of slender fibres as physical reservoirs: simulate them, score what they compute.
 
-    from fiberweb import crosshatch, Scene, simulate, score
-    response = simulate(Scene(crosshatch(4, length=0.5), duration=20.0))
-    print(score(response).c_nl)
+from fiberweb import crosshatch, Scene, simulate, score
+response = simulate(Scene(crosshatch(4, length=0.5), duration=20.0))
+print(score(response).c_nl)
 """
 
 from fiberweb.network import crosshatch, polygon

@@ -42,8 +42,6 @@ def simulate(
     from fiberweb import dataset, engines
     from fiberweb.mesh import build
 
-    numerics = resolve(
-        scene, accuracy, engine, elements_per_section, time_step, force_time_step
-    )
+    numerics = resolve(scene, accuracy, engine, elements_per_section, time_step, force_time_step)
     mesh = build(scene, numerics.elements_per_section)
     return dataset.response(mesh, numerics, engines.load(numerics.engine).integrate(mesh, numerics))

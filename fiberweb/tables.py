@@ -80,11 +80,13 @@ def floors(
     response = dataset.load(response_path)
     if scoring is None:
         scoring = "published" if response.attrs["setup"] == "published" else "clean"
-    sample_rate = Scene.from_json(response.attrs["scene"]).sample_rate
-    u = response["input"].values
+    sample_rate = float(response.attrs["sample_rate"])
+    u = response["input"].values  # whole even in an unstable run
     records = []
     for name, readouts in capacity.trivial_readouts(u, sample_rate).items():
-        scored = capacity.score_arrays(u, readouts, sample_rate, scoring, alpha, **options)
+        scored = capacity.score_arrays(
+            u, readouts, sample_rate, scoring=scoring, alpha=alpha, **options
+        )
         records.append((name, scored.c_nl, scored.c_m))
     return _frame(records, FLOOR_COLUMNS)
 

@@ -307,9 +307,7 @@ def advance(
                 stretched, step,
             )  # fmt: skip
             u = drive_value(drive, drive_rate, time)
-            point_kicks(
-                vx, vy, kick_x, kick_y, joints, force, loaded, load_x, load_y, u, decay
-            )
+            point_kicks(vx, vy, kick_x, kick_y, joints, force, loaded, load_x, load_y, u, decay)
             if order > 0:
                 laplace_filter(vx, inner_node, order, na, nb)
                 laplace_filter(vy, inner_node, order, na, nb)

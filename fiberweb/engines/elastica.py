@@ -26,9 +26,7 @@ MM, MICRONEWTON = 1e3, 1e6  # a metre in mm; a newton in g mm / s^2
 GRAM_PER_SECOND = 1e3  # of one N s/m, and of one N/m per second
 
 
-class Simulator(
-    ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.Damping
-):
+class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.Damping):
     """Rods with everything a fibre network needs."""
 
 
@@ -194,9 +192,7 @@ def _pull(simulator, mesh: Mesh, fibre: int, rod) -> None:
 def _damp(simulator, mesh: Mesh, rod, step: float) -> None:
     scene = mesh.scene
     kind = "damping_constant" if scene.setup == "published" else "uniform_damping_constant"
-    simulator.dampen(rod).using(
-        ea.AnalyticalLinearDamper, time_step=step, **{kind: scene.damping}
-    )
+    simulator.dampen(rod).using(ea.AnalyticalLinearDamper, time_step=step, **{kind: scene.damping})
     if scene.filter_order:
         simulator.dampen(rod).using(ea.LaplaceDissipationFilter, filter_order=scene.filter_order)
 

@@ -74,7 +74,7 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     while done < samples:
         end = min(samples, done + CHUNK)
         good = advance(
-            state.chain, state.work, arrays.chain, arrays.groups, mesh.drive,
+            state.chain, state.work, arrays.chain, arrays.joints, mesh.drive,
             (layout.at[nodes], weights, layout.x, layout.y),
             (scene.drive_rate, scene.tension_ramp, step, limit, arrays.decay),
             per_sample, done, out[done:end],
@@ -92,7 +92,9 @@ class State:
     def __init__(self, layout: Layout):
         size = len(layout.x)
         self.chain = (layout.x.copy(), layout.y.copy(), np.zeros(size), np.zeros(size))
-        self.work = tuple(np.zeros(size - 1) for _ in range(5)) + (np.zeros(size),)
+        self.work = tuple(np.zeros(size - 1) for _ in range(5)) + tuple(
+            np.zeros(size) for _ in range(3)
+        )
 
 
 class _coefficients:
@@ -109,7 +111,7 @@ class _coefficients:
             axial, layout.edge, 3.0 * layout.bend, kick_x, kick_y, layout.pull_x, layout.pull_y,
             loaded, layout.load_x[loaded], layout.load_y[loaded],
         )  # fmt: skip
-        self.groups = joint_operators(mesh, layout, step)
+        self.joints = joint_operators(mesh, layout, step)
 
 
 def joint_operators(mesh: Mesh, layout: Layout, step: float):
@@ -126,51 +128,67 @@ def joint_operators(mesh: Mesh, layout: Layout, step: float):
     are one point get the mass-weighted mean of v*.
 
     Returns:
-        start of each group in members, members (padded node indices), start of each group in
-        the operators, operators (P, Q, S of each group, each row by row).
+        For crossings of two nodes, on the relative motion: nodes a and b, p, q, s and the
+        shares of a and b in a change of relative velocity, each (pairs,). For the others: start
+        of each group in members, members (padded node indices), start of each group in the
+        operators, operators (P, Q, S of each group, each row by row).
     """
-    half = np.exp(-0.5 * mesh.scene.damping * step)
+    pairs, others = [], []
+    for nodes, spring, damper in _groups(mesh, layout):
+        mass = layout.mass[nodes]
+        operators = _group_operators(mass, spring, damper, step, mesh.scene.damping)
+        if len(nodes) == 2:
+            # applied to a relative displacement, each operator gives back a multiple of it
+            p, q, s = (operator[1, 1] - operator[0, 1] for operator in operators)
+            pairs.append((*nodes, p, q, s, *(1.0 - mass / mass.sum())))
+        else:
+            others.append((nodes, operators))
+    a, b, *rest = (np.array(column) for column in zip(*pairs)) if pairs else [np.zeros(0)] * 7
+    integer = np.int64
+    return (
+        a.astype(integer), b.astype(integer), *rest,
+        np.cumsum([0] + [len(nodes) for nodes, _ in others]),
+        np.array([n for nodes, _ in others for n in nodes], dtype=integer),
+        np.cumsum([0] + [operators.size for _, operators in others]),
+        np.concatenate([operators.ravel() for _, operators in others] or [np.zeros(0)]),
+    )  # fmt: skip
+
+
+def _groups(mesh: Mesh, layout: Layout):
+    """Nodes that meet at each crossing, with their spring and damper matrices."""
     size = len(layout.mass)
     a, b = layout.joints.T
     _, label = connected_components(
         coo_array((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False
     )
-    groups: dict[int, list[int]] = {}
+    members: dict[int, list[int]] = {}
     for node in np.unique(layout.joints):
-        groups.setdefault(label[node], []).append(int(node))
-    starts, members, offsets, operators = [0], [], [0], []
-    for nodes in groups.values():
-        local = {node: i for i, node in enumerate(nodes)}
-        spring, damper = np.zeros((len(nodes),) * 2), np.zeros((len(nodes),) * 2)
-        for (i, j), k, nu in zip(layout.joints, mesh.joint_stiffness, mesh.joint_damping):
-            if label[i] == label[nodes[0]]:
-                pair = np.zeros(len(nodes))
-                pair[local[i]], pair[local[j]] = 1.0, -1.0
-                spring += k * np.outer(pair, pair) if np.isfinite(k) else 0.0
-                damper += nu * np.outer(pair, pair)
-        operators.append(
-            _group_operators(layout.mass[nodes], spring, damper, step, half, mesh.joint_stiffness)
-        )
-        members += nodes
-        starts.append(len(members))
-        offsets.append(offsets[-1] + operators[-1].size)
-    flat = np.concatenate([o.ravel() for o in operators]) if operators else np.zeros(0)
-    return np.array(starts), np.array(members, dtype=np.int64), np.array(offsets), flat
+        members.setdefault(label[node], []).append(int(node))
+    matrices = {key: np.zeros((2, len(nodes), len(nodes))) for key, nodes in members.items()}
+    for (i, j), k, nu in zip(layout.joints, mesh.joint_stiffness, mesh.joint_damping):
+        nodes, (spring, damper) = members[label[i]], matrices[label[i]]
+        gap = np.zeros(len(nodes))
+        gap[nodes.index(i)], gap[nodes.index(j)] = 1.0, -1.0
+        at = np.ix_(np.flatnonzero(gap), np.flatnonzero(gap))
+        spring[at] += k * np.outer(gap, gap)[at]
+        damper += nu * np.outer(gap, gap)
+    for key, nodes in members.items():
+        yield nodes, *matrices[key]
 
 
-def _group_operators(mass, spring, damper, step, half, stiffness) -> np.ndarray:
+def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
     """P, Q and S of one group, shape (3, nodes, nodes)."""
     count = len(mass)
-    if np.isinf(stiffness).all():
+    if not np.isfinite(spring).all():
         mean = np.tile(mass / mass.sum(), (count, 1))
         return np.array([np.zeros((count, count)), mean, np.zeros((count, count))])
-    rate = step * damper / mass[:, None]
-    # phi-function through one exponential of an augmented matrix: no division by zero rates
-    augmented = np.block([[-rate, np.eye(count)], [np.zeros((count, 2 * count))]])
+    damping = step * damper / mass[:, None]
+    # the phi function from one exponential of an augmented matrix: no division by zero rates
+    augmented = np.block([[-damping, np.eye(count)], [np.zeros((count, 2 * count))]])
     exponential = expm(augmented)
     decayed, phi = exponential[:count, :count], exponential[:count, count:]
-    kick = -step * half * phi @ (spring / mass[:, None])
-    return np.array([half * half * (decayed - phi), phi, kick])
+    kick = -step * np.exp(-0.5 * rate * step) * phi @ (spring / mass[:, None])
+    return np.array([np.exp(-rate * step) * (decayed - phi), phi, kick])
 
 
 @kernel
@@ -205,44 +223,47 @@ def force_pass(tx, ty, inverse, axial, edge, moment0, moment1, fx, fy):
 
 
 @kernel
-def kick_pass(x, v, f0, f1, pull, kick, ramp, decay, step):
+def kick_pass(x, v, f0, f1, outer, kick, decay, step):
     """Velocity by the net force, then position by the velocity (one direction)."""
     for i in range(v.shape[0]):
-        new = decay * v[i] + kick[i] * (f1[i] - f0[i] + ramp * pull[i])
+        new = decay * v[i] + kick[i] * (f1[i] - f0[i] + outer[i])
         v[i] = new
         x[i] += step * new
 
 
 @kernel
-def joint_gather(position, velocity, members, starts, offsets, operators, out):
-    """The part of the crossings' step that needs the state before the kick."""
-    for g in range(starts.shape[0] - 1):
-        first, count = starts[g], starts[g + 1] - starts[g]
-        o = offsets[g]
-        for i in range(count):
-            total = 0.0
-            for j in range(count):
-                node = members[first + j]
-                total += operators[o + i * count + j] * velocity[node]
-                total += operators[o + (2 * count + i) * count + j] * position[node]
-            out[first + i] = total
+def pair_pass(x, v, f, outer, kick, a_nodes, b_nodes, p, q, s, share_a, share_b, decay):
+    """Change the velocities of crossings of two nodes such that the kick that follows leaves
+    them as spring and damper would (one direction); `joint_operators` has the step."""
+    for j in range(a_nodes.shape[0]):
+        a, b = a_nodes[j], b_nodes[j]
+        old = v[b] - v[a]
+        kicked = decay * old + (
+            kick[b] * (f[b] - f[b - 1] + outer[b]) - kick[a] * (f[a] - f[a - 1] + outer[a])
+        )
+        change = (p[j] * old + q[j] * kicked + s[j] * (x[b] - x[a]) - kicked) / decay
+        v[a] -= share_a[j] * change
+        v[b] += share_b[j] * change
 
 
 @kernel
-def joint_scatter(position, velocity, members, starts, offsets, operators, early, step, scratch):
-    """The part that needs the velocities after the kick; corrects the drift as well."""
+def group_pass(x, v, f, outer, kick, starts, members, offsets, operators, decay, old, kicked):
+    """The same for crossings of any number of nodes, by dense operators."""
     for g in range(starts.shape[0] - 1):
         first, count = starts[g], starts[g + 1] - starts[g]
-        o = offsets[g] + count * count
+        p = offsets[g]
+        q, s = p + count * count, p + 2 * count * count
         for i in range(count):
-            total = early[first + i]
+            n = members[first + i]
+            old[i] = v[n]
+            kicked[i] = decay * v[n] + kick[n] * (f[n] - f[n - 1] + outer[n])
+        for i in range(count):
+            new = -kicked[i]
             for j in range(count):
-                total += operators[o + i * count + j] * velocity[members[first + j]]
-            scratch[i] = total
-        for i in range(count):
-            node = members[first + i]
-            position[node] += step * (scratch[i] - velocity[node])
-            velocity[node] = scratch[i]
+                k = i * count + j
+                new += operators[p + k] * old[j] + operators[q + k] * kicked[j]
+                new += operators[s + k] * x[members[first + j]]
+            v[members[first + i]] += new / decay
 
 
 @kernel
@@ -278,13 +299,13 @@ def in_bounds(vx, vy, limit):
 
 
 @kernel
-def advance(chain, work, coefficients, groups, drive, readouts, scalars, per_sample, first, out):
+def advance(chain, work, coefficients, joints, drive, readouts, scalars, per_sample, first, out):
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Args:
         chain: x, y (m; half a step ahead of the time) and vx, vy (m/s), each (n,).
-        work: tx, ty, inverse, fx, fy (n - 1,) and moment (n,).
-        coefficients, groups: see `_coefficients` and `joint_operators`.
+        work: tx, ty, inverse, fx, fy (n - 1,); moment and outer force in x and y (n,).
+        coefficients, joints: see `_coefficients` and `joint_operators`.
         drive: spline coefficients, (intervals, 4).
         readouts: nodes, weights (readouts, 2), rest x, rest y (n,).
         scalars: drive rate, tension ramp, step, velocity limit, decay per step.
@@ -296,48 +317,52 @@ def advance(chain, work, coefficients, groups, drive, readouts, scalars, per_sam
         How many samples were recorded before the run became unstable.
     """
     x, y, vx, vy = chain
-    tx, ty, inverse, fx, fy, moment = work
+    tx, ty, inverse, fx, fy, moment, outer_x, outer_y = work
     axial, edge, bend3, kick_x, kick_y, pull_x, pull_y, loaded, load_x, load_y = coefficients
-    starts, members, offsets, operators = groups
+    a_nodes, b_nodes, p, q, s, share_a, share_b, starts, members, offsets, operators = joints
     nodes, weights, rest_x, rest_y = readouts
     drive_rate, ramp_time, step, limit, decay = scalars
+    # views are made once: at a few hundred elements they would cost a fifth of the step
     x0, x1, y0, y1 = x[:-1], x[1:], y[:-1], y[1:]
     tx0, tx1, ty0, ty1 = tx[:-1], tx[1:], ty[:-1], ty[1:]
-    moment0, moment1, inner_moment = moment[:-1], moment[1:], moment[1:-1]
-    inner_bend = bend3[1:-1]
+    moment0, moment1, inner_moment, inner_bend = moment[:-1], moment[1:], moment[1:-1], bend3[1:-1]
     xi, yi, vxi, vyi = x[1:-1], y[1:-1], vx[1:-1], vy[1:-1]
     fx0, fx1, fy0, fy1 = fx[:-1], fx[1:], fy[:-1], fy[1:]
-    kxi, kyi, pxi, pyi = kick_x[1:-1], kick_y[1:-1], pull_x[1:-1], pull_y[1:-1]
-    early_x, early_y = np.zeros(members.shape[0]), np.zeros(members.shape[0])
-    scratch = np.zeros(members.shape[0])
+    kxi, kyi, oxi, oyi = kick_x[1:-1], kick_y[1:-1], outer_x[1:-1], outer_y[1:-1]
+    old, kicked = np.zeros(members.shape[0]), np.zeros(members.shape[0])
     for sample in range(out.shape[0]):
         record(x, y, vx, vy, nodes, weights, rest_x, rest_y, 0.5 * step, out[sample])
         if not in_bounds(vx, vy, limit):
             return sample
         start = (first + sample) * per_sample
+        ramp = min(1.0, start * step / ramp_time) if ramp_time > 0.0 else 1.0
+        for i in range(outer_x.shape[0]):
+            outer_x[i] = ramp * pull_x[i]
+            outer_y[i] = ramp * pull_y[i]
         for k in range(start, start + per_sample):
-            time = (k + 0.5) * step
-            ramp = 1.0 if time >= ramp_time else time / ramp_time
+            u = drive_value(drive, drive_rate, (k + 0.5) * step)
+            for i in range(loaded.shape[0]):
+                n = loaded[i]
+                outer_x[n] = ramp * pull_x[n] + u * load_x[i]
+                outer_y[n] = ramp * pull_y[n] + u * load_y[i]
             stretch_pass(x0, x1, y0, y1, tx, ty, inverse)
             moment_pass(tx0, tx1, ty0, ty1, inner_bend, inner_moment)
             force_pass(tx, ty, inverse, axial, edge, moment0, moment1, fx, fy)
-            joint_gather(x, vx, members, starts, offsets, operators, early_x)
-            joint_gather(y, vy, members, starts, offsets, operators, early_y)
-            kick_pass(xi, vxi, fx0, fx1, pxi, kxi, ramp, decay, step)
-            kick_pass(yi, vyi, fy0, fy1, pyi, kyi, ramp, decay, step)
-            u = drive_value(drive, drive_rate, time)
-            for i in range(loaded.shape[0]):
-                n = loaded[i]
-                dvx = kick_x[n] * u * load_x[i]
-                dvy = kick_y[n] * u * load_y[i]
-                vx[n] += dvx
-                vy[n] += dvy
-                x[n] += step * dvx
-                y[n] += step * dvy
-            joint_scatter(
-                x, vx, members, starts, offsets, operators, early_x, step, scratch
+            pair_pass(
+                x, vx, fx, outer_x, kick_x, a_nodes, b_nodes, p, q, s, share_a, share_b, decay
             )
-            joint_scatter(
-                y, vy, members, starts, offsets, operators, early_y, step, scratch
+            pair_pass(
+                y, vy, fy, outer_y, kick_y, a_nodes, b_nodes, p, q, s, share_a, share_b, decay
             )
+            if starts.shape[0] > 1:
+                group_pass(
+                    x, vx, fx, outer_x, kick_x, starts, members, offsets, operators, decay, old,
+                    kicked,
+                )  # fmt: skip
+                group_pass(
+                    y, vy, fy, outer_y, kick_y, starts, members, offsets, operators, decay, old,
+                    kicked,
+                )  # fmt: skip
+            kick_pass(xi, vxi, fx0, fx1, oxi, kxi, decay, step)
+            kick_pass(yi, vyi, fy0, fy1, oyi, kyi, decay, step)
     return out.shape[0]

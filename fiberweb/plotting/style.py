@@ -6,6 +6,7 @@ through the Agg backend, and nothing outside `applied` changes matplotlib's glob
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -17,6 +18,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, FigureBase
 
+# DejaVu carries an old creation date; fontTools warns of it in every job that writes a PDF.
+logging.getLogger("fontTools.ttLib.tables._h_e_a_d").setLevel(logging.ERROR)
+
 SINGLE, DOUBLE = 88.0, 180.0  # column widths, mm
 MM = 1 / 25.4  # inch
 RESOLUTION = 300  # dpi
@@ -25,7 +29,7 @@ INK, GREY, FAINT = "#1a1a1a", "#6e6e6e", "#bdbdbd"
 DRIVE = "#c8442c"  # the driven point, and nothing else
 SEQUENTIAL = cm.batlow  # magnitudes
 DIVERGING = cm.vik  # signed differences
-UNSTABLE = {"marker": "X", "color": "#b2182b", "markersize": 5, "linestyle": "none"}
+UNSTABLE = {"marker": "X", "color": "#b2182b", "markersize": 5.5, "mew": 0.3, "linestyle": "none"}
 
 RC = {
     "font.family": "DejaVu Sans",

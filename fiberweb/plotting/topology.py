@@ -26,7 +26,11 @@ DRAWN = {"crosshatch": (2, 4, 8), "polygon": (6, 8, 12)}  # schematics, where th
 TITLES = {"crosshatch": "Crosshatch networks", "polygon": "Polygonal networks"}
 TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resolved in a third
 CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
+DRIVEN = r"$\updownarrow$"
 FLOORS = {"u": "$u$", "derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$"}
+TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
+TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
+FLOOR_LINE = {"color": style.GREY, "lw": 0.7, "ls": (0, (4, 2))}
 LABEL_GAP = 0.09  # floors closer than this share a label
 
 
@@ -46,8 +50,9 @@ def draw(
         curves: from `tables.curves`, of the same runs.
         floors: from `tables.floors`, or None.
         traces: ``target`` and ``prediction`` (trace, time), ``c`` (trace), with the trace names
-            and time in s as coordinates, NaN where a target's test part has not begun; attr
-            ``scene`` names the network. None leaves panel d out.
+            ("P4" for P_4(u(t)), "200 ms" for recall) and time in s as coordinates, NaN where a
+            target's test part has not begun; attr ``scene`` names the network. None, or nothing
+            but NaN, leaves panel d out.
         setup: "described" or "published".
         path: of the figure; both suffixes are written beside each other.
 
@@ -60,20 +65,26 @@ def draw(
     table, curves = (frame[frame["setup"] == setup] for frame in (table, curves))
     if table.empty:
         raise ValueError(f"the topology table has no run of the {setup} setup to draw")
+    if traces is not None and not _known(traces).any():
+        traces = None  # an unstable run has no prediction to show
     present = [name for name in TITLES if (table["topology"] == name).any()]
-    heights = [30.0] + [46.0] * len(present) + ([48.0] if traces is not None else [])
+    heights = [30.0] + [46.0] * len(present) + ([54.0] if traces is not None else [])
     with style.applied():
         figure = style.figure(style.DOUBLE, sum(heights))
         rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
         letters = iter("abcd")
+        sizes = sorted(table["n"].unique())
+        colour = dict(zip(sizes, style.colours(len(sizes)), strict=True))  # of N in every panel
         style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
         _networks(rows[0], table, setup)
         for row, topology in zip(rows[1:], present, strict=False):
             style.letter(row, next(letters), TITLES[topology])
             runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
-            _capacities(row, runs, points, floors)
+            _capacities(row, runs, points, floors, colour)
+        _key(rows[1], table, floors)
         if traces is not None:
-            style.letter(rows[-1], next(letters), f"Example computations{_network_name(traces)}")
+            title = f"Example computations{_network_name(traces)} (black dashes: target)"
+            style.letter(rows[-1], next(letters), title)
             _traces(rows[-1], traces)
         style.save(figure, path)
     return figure
@@ -86,17 +97,18 @@ def _networks(part: SubFigure, table: pd.DataFrame, setup: str) -> None:
         ran = sorted(table.loc[table["topology"] == topology, "n"].unique())
         drawn += [(topology, n) for n in ([n for n in preferred if n in ran] or ran[:3])]
     axes = part.subplots(1, len(drawn) + 1, width_ratios=[1] * len(drawn) + [1.5])
-    for ax, (topology, n) in zip(axes, drawn, strict=False):
+    for index, (ax, (topology, n)) in enumerate(zip(axes, drawn, strict=False)):
         network = _network(topology, int(n), setup)
-        _schematic(ax, network, readouts=n == min(ran_n for _, ran_n in drawn))
+        _schematic(ax, network, readouts=index == 0)
         ax.set_title(_label(topology, n))
     handles = [
-        Line2D([], [], color=style.DRIVE, marker=r"$\updownarrow$", ls="", ms=7),
+        Line2D([], [], color=style.DRIVE, marker=DRIVEN, ls="", ms=6),
         Line2D([], [], color=style.INK, marker="o", ls="", ms=2.4),
         Line2D([], [], color=style.INK, marker="o", mfc="white", mew=0.6, ls="", ms=2.6),
     ]
     axes[-1].axis("off")
-    axes[-1].legend(handles, ["driven point", "readout: crossing", "readout: midpoint"], loc="center left")
+    labels = ["driven point", "readout: crossing", "readout: midpoint"]
+    axes[-1].legend(handles, labels, loc="center left")
 
 
 def _network(topology: str, n: int, setup: str) -> Network:
@@ -110,12 +122,15 @@ def _schematic(ax: Axes, network: Network, readouts: bool) -> None:
     near, far = network.fibres[network.driven_fibre]
     driven = near + (far - near) * network.driven_distance / np.linalg.norm(far - near)
     if readouts:
-        middle = np.concatenate([_midpoints(network, fibre) for fibre in range(len(network.fibres))])
-        ax.plot(*middle.T, "o", ms=2.6, mfc="white", mec=style.INK, mew=0.6)
-        ax.plot(*network.crossings.T, "o", ms=2.4, color=style.INK)
-    ax.plot(*driven, marker=r"$\updownarrow$", ms=8, color=style.DRIVE, zorder=4)
-    ax.set_aspect("equal")
-    ax.margins(0.04)
+        middle = np.concatenate(
+            [_midpoints(network, fibre) for fibre in range(len(network.fibres))]
+        )
+        ax.plot(*middle.T, "o", ms=2.6, mfc="white", mec=style.INK, mew=0.6, zorder=4)
+        ax.plot(*network.crossings.T, "o", ms=2.4, color=style.INK, zorder=4)
+    ax.plot(*driven, marker=DRIVEN, ms=8, color=style.DRIVE, zorder=3)
+    centre = 0.5 if network.topology == "crosshatch" else 0.0
+    limits = (centre - 0.52, centre + 0.52)
+    ax.set(aspect="equal", xlim=limits, ylim=limits)
     ax.axis("off")
 
 
@@ -128,12 +143,15 @@ def _midpoints(network: Network, fibre: int) -> np.ndarray:
 
 
 def _capacities(
-    part: SubFigure, runs: pd.DataFrame, points: pd.DataFrame, floors: pd.DataFrame | None
+    part: SubFigure,
+    runs: pd.DataFrame,
+    points: pd.DataFrame,
+    floors: pd.DataFrame | None,
+    colour: dict,
 ) -> None:
     """c over order and over lag for each N, then the totals over N."""
     by_order, by_lag, nonlinear, memory = part.subplots(1, 4, width_ratios=[1.15, 1.15, 1, 1])
     sizes = sorted(runs["n"].unique())
-    colour = dict(zip(sizes, style.colours(len(sizes)), strict=True))
     unstable = set(runs.loc[runs["status"] == "unstable", "n"])
     for n in sizes:
         if n in unstable:
@@ -143,15 +161,19 @@ def _capacities(
             at = curve[curve["target"] == target].sort_values("at")
             ax.plot(at["at"], at["c"], color=colour[n], marker=marker, ms=2.4)
     by_order.set(xlabel="Legendre order", ylabel="capacity c", xticks=range(2, 11, 2))
-    by_lag.set(xlabel="recall lag (s)")
-    by_lag.set_xlim(left=0)
+    by_lag.set(xlabel="recall lag (s)", xlim=(0, points["at"][points["target"] == "lag"].max()))
+    by_lag.tick_params(labelleft=False)
     handles = [
         Line2D([], [], color=colour[n]) if n not in unstable else Line2D([], [], **style.UNSTABLE)
         for n in sizes
     ]
     labels = [_label(runs["topology"].iloc[0], n) for n in sizes]
-    by_lag.legend(handles, labels, loc="upper right", labelspacing=0.25)
-    for ax, name, symbol in ((nonlinear, "c_nl", "$C_{nl}$"), (memory, "c_m", "$C_m$")):
+    # beside the axes: the larger networks' curves fill the whole panel
+    by_lag.legend(
+        handles, labels, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelspacing=0.3,
+        handlelength=1.2,
+    )  # fmt: skip
+    for ax, (name, symbol) in zip((nonlinear, memory), TOTALS.items(), strict=True):
         _total(ax, runs, name, colour)
         if floors is not None:
             _floors(ax, floors, name)
@@ -160,16 +182,33 @@ def _capacities(
         ax.set_ylim(*CAPACITY_AXIS)
 
 
+def _key(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame | None) -> None:
+    """What the marks in the totals mean, on the title's line."""
+    handles = {
+        "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
+        "training": Line2D([], [], **TRAINING),
+    }
+    if floors is not None:
+        handles["readouts made of the input alone"] = Line2D([], [], **FLOOR_LINE)
+    if (table["status"] == "unstable").any():
+        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
+    legend = part.legend(
+        handles.values(), handles.keys(), ncols=len(handles), loc="upper right",
+        bbox_to_anchor=(0.995, 1.0), columnspacing=1.2,
+    )  # fmt: skip
+    legend.set_in_layout(False)  # it shares the line of the title, which reserves the room
+
+
 def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
     """C_nl or C_m over N: test with its standard error, training as open markers."""
     runs = runs.sort_values("n")
     stable = runs[runs["status"] != "unstable"]
     ax.plot(stable["n"], stable[name], color=style.FAINT, lw=0.8, zorder=1)
-    ax.plot(stable["n"], stable[f"{name}_train"], "_", color=style.GREY, ms=5, mew=1, zorder=2)
+    ax.plot(stable["n"], stable[f"{name}_train"], **TRAINING)
     for run in stable.itertuples():
         ax.errorbar(
             run.n, getattr(run, name), yerr=getattr(run, f"{name}_se"), color=colour[run.n],
-            marker="o", capsize=1.5, elinewidth=0.8, zorder=3,
+            ecolor=style.INK, marker="o", ms=3, elinewidth=0.7, zorder=3,
         )  # fmt: skip
     style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
     ax.margins(x=0.08)
@@ -179,7 +218,7 @@ def _floors(ax: Axes, floors: pd.DataFrame, name: str) -> None:
     """What readouts of the input alone score, labelled beside the axes."""
     groups: list[list[tuple[float, str]]] = []
     for value, readout in sorted(zip(floors[name], floors["readout"], strict=True)):
-        ax.axhline(value, color=style.GREY, lw=0.7, ls=(0, (4, 2)), zorder=0)
+        ax.axhline(value, zorder=0, **FLOOR_LINE)
         if groups and value - groups[-1][-1][0] < LABEL_GAP:
             groups[-1].append((value, readout))
         else:
@@ -194,13 +233,15 @@ def _floors(ax: Axes, floors: pd.DataFrame, name: str) -> None:
 
 def _traces(part: SubFigure, traces: xr.Dataset) -> None:
     """Target (dashed) and prediction over a few seconds of the test part, one axes a trace."""
-    known = np.isfinite(traces["target"].values).all(axis=0)
+    known = _known(traces)
     time = traces["time"].values
     start = time[known][0]
     shown = known & (time < start + TRACE_SECONDS)
     columns = -(-traces.sizes["trace"] // 2)
     axes = part.subplots(2, columns, sharex=True, sharey=True, squeeze=False)
     colours = style.colours(4)
+    for ax in axes[:, 0]:
+        ax.set_ylabel(r"$z,\ \hat{z}$")
     for ax, name in zip(axes.T.ravel(), traces["trace"].values, strict=False):
         one = traces.sel(trace=name)
         legendre = str(name).startswith("P")
@@ -208,9 +249,15 @@ def _traces(part: SubFigure, traces: xr.Dataset) -> None:
         ax.plot(time[shown], one["target"].values[shown], "--", color="black", lw=0.7)
         title = f"$P_{{{name[1:]}}}(u(t))$" if legendre else f"$u(t - {name.split()[0]}$ ms$)$"
         ax.set_title(f"{title}   c = {float(one['c']):.3f}")
-        ax.set(ylim=(-1.25, 1.25), xlim=(start, start + TRACE_SECONDS))
+        ax.set(ylim=(-1.15, 1.15), xlim=(start, start + TRACE_SECONDS))
     for ax in axes[-1]:
         ax.set_xlabel("time (s)")
+
+
+def _known(traces: xr.Dataset) -> np.ndarray:
+    """Instants at which every target and prediction exists, shape (time,)."""
+    both = np.isfinite(traces["target"].values) & np.isfinite(traces["prediction"].values)
+    return both.all(axis=list(traces["target"].dims).index("trace"))
 
 
 def _network_name(traces: xr.Dataset) -> str:

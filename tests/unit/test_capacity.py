@@ -12,7 +12,7 @@ from sklearn.linear_model import Ridge
 from sklearn.model_selection import train_test_split
 from sklearn.preprocessing import StandardScaler
 
-from fiberweb import capacity
+from fiberweb import capacity, ridge
 from fiberweb.drive import spline
 
 RATE = 50.0
@@ -137,7 +137,7 @@ def test_skip_drops_first_frames(well_posed):
 # --- known answers ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scoring", capacity.SCORINGS)
+@pytest.mark.parametrize("scoring", ridge.SCORINGS)
 def test_delayed_copies_of_the_input_are_recalled(scoring):
     u = drive(60.0)
     delays = [0, 10, 35]
@@ -147,7 +147,7 @@ def test_delayed_copies_of_the_input_are_recalled(scoring):
     assert memory[22] < 0.9 and memory[50] < 0.9
 
 
-@pytest.mark.parametrize("scoring", capacity.SCORINGS)
+@pytest.mark.parametrize("scoring", ridge.SCORINGS)
 def test_legendre_polynomials_as_readouts_are_nonlinear_capacity(scoring):
     u = drive(60.0)
     x = np.column_stack([eval_legendre(k, min_max(u)) for k in range(1, 11)])
@@ -183,13 +183,13 @@ def test_trivial_readouts_differentiate_a_sine():
 
 
 def test_targets():
-    u = capacity.scale_input(np.array([3.0, 5.0, 4.0, 7.0]))
+    u = ridge.scale_input(np.array([3.0, 5.0, 4.0, 7.0]))
     np.testing.assert_allclose(u, [-1, 0, -0.5, 1])
     np.testing.assert_allclose(
-        capacity.legendre_targets(u, (1, 2)), np.column_stack([u, (3 * u**2 - 1) / 2])
+        ridge.legendre_targets(u, (1, 2)), np.column_stack([u, (3 * u**2 - 1) / 2])
     )
     np.testing.assert_array_equal(
-        capacity.recall_targets(u, (0, 2)), [[-1, np.nan], [0, np.nan], [-0.5, -1], [1, 0]]
+        ridge.recall_targets(u, (0, 2)), [[-1, np.nan], [0, np.nan], [-0.5, -1], [1, 0]]
     )
 
 
@@ -207,7 +207,7 @@ def test_raw_keeps_what_the_totals_clip():
     assert published.memory.min() == 0 and published.memory_raw.min() < 0
 
 
-@pytest.mark.parametrize("scoring", capacity.SCORINGS)
+@pytest.mark.parametrize("scoring", ridge.SCORINGS)
 def test_still_readouts_change_nothing(scoring, well_posed):
     u, x = well_posed
     still = np.column_stack([np.zeros(len(u)), np.full(len(u), 0.1)])
@@ -222,7 +222,7 @@ def test_still_readouts_change_nothing(scoring, well_posed):
 @given(
     scale=st.floats(-9, 3).map(lambda power: 10.0**power),
     shift=st.floats(-1, 1),
-    scoring=st.sampled_from(capacity.SCORINGS),
+    scoring=st.sampled_from(ridge.SCORINGS),
 )
 def test_units_and_offset_of_readouts_do_not_matter(scale, shift, scoring):
     u = drive(8.0)
@@ -236,7 +236,7 @@ def test_units_and_offset_of_readouts_do_not_matter(scale, shift, scoring):
 # --- standard errors --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scoring", capacity.SCORINGS)
+@pytest.mark.parametrize("scoring", ridge.SCORINGS)
 @pytest.mark.parametrize("total", ["c_nl", "c_m"])
 def test_standard_error_is_the_scatter_of_recordings(scoring, total):
     """Eight recordings scatter by about their errors; eight times the length has a smaller one."""
@@ -263,7 +263,7 @@ def test_standard_error_is_repeatable_and_unknown_for_a_short_test_part(well_pos
 # --- traces -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scoring", capacity.SCORINGS)
+@pytest.mark.parametrize("scoring", ridge.SCORINGS)
 def test_traces_have_the_capacities_that_were_scored(scoring, well_posed):
     u, x = well_posed
     traces = capacity.predict(u, x, RATE, orders=(4, 7), lags=(0.4, 0.2), scoring=scoring)

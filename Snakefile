@@ -1,0 +1,52 @@
+# Regenerates the paper: warmup -> one `simulate` a scene -> one `capacity` a scene -> tables,
+# figures and the claims.
+#
+#   snakemake --cores 2 figures      the paper's text (setup `described`)
+#   snakemake --cores 2 published    the authors' code (setup `published`)
+#   snakemake --cores 2 topology     one study alone
+#   snakemake --cores 2 claims       only the table of the paper's claims
+
+import subprocess
+import sys
+
+from snakemake.utils import min_version
+
+min_version("9.27")
+
+
+configfile: "config/config.yaml"
+
+
+report: "workflow/report/workflow.rst"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/simulate.smk"
+include: "workflow/rules/capacity.smk"
+include: "workflow/rules/topology.smk"
+include: "workflow/rules/claims.smk"
+
+
+rule figures:
+    default_target: True
+    input:
+        [figure(study, "described") for study in STUDIES],
+        [f"<results>/tables/{table}.csv" for table in all_tables()],
+        rules.claims.output,
+
+
+rule published:
+    input:
+        [figure(study, "published") for study in STUDIES],
+        [f"<results>/tables/{table}.csv" for table in all_tables()],
+        rules.claims.output,
+
+
+onstart:
+    # commit and versions, of no use to a rule: they must not change tables nor cause reruns
+    subprocess.run([sys.executable, "workflow/scripts/provenance.py", RESULTS], check=True)
+
+
+onsuccess:
+    print(f"Done: figures in {RESULTS}/figures, tables in {RESULTS}/tables;")
+    print(f"{RESULTS}/tables/claims.csv holds each claim of the paper against them.")

@@ -1,0 +1,225 @@
+"""Ridge regression of many targets on the readouts of one run: options, targets and fits.
+
+Penalty alpha |w|^2 against the sum of squares, an intercept that is not penalised: the
+semantics of scikit-learn's `Ridge`, which is the oracle in the tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Real
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+from scipy.linalg import LinAlgError, blas, cho_factor, cho_solve
+
+SCORINGS = ("clean", "published")
+SHUFFLE_SEED = 42  # the authors' random_state
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a run is scored. In both scorings u is scaled to [-1, 1] over the whole run.
+
+    - clean: all targets share the rows t >= horizon and one chronological split; readouts are
+      standardised on the training part; c is kept raw.
+    - published: as the authors scored. Readouts are standardised over the whole run, so the test
+      part leaks into their scale; each lag is split on its own; an estimate outside [-1, 1] is
+      replaced, with its target, by the target's mean before c is taken; c < 0 counts as 0.
+
+    ValueError for an unknown scoring or a value out of range.
+    """
+
+    scoring: str = "clean"
+    alpha: float = 0.01  # penalty alpha |w|^2 against the SUM of squares, standardised readouts
+    horizon: float = 1.0  # longest recall lag, s
+    split: float = 0.75  # fraction of the frames trained on
+    skip: int = 0  # first frames dropped before anything else
+    shuffle: bool = False  # published only: split nonlinear targets at random, which flatters C_nl
+
+    def __post_init__(self):
+        if self.scoring not in SCORINGS:
+            valid = " or ".join(map(repr, SCORINGS))
+            raise ValueError(f"scoring = {self.scoring!r} is unknown; use {valid}")
+        for key in ("alpha", "horizon"):
+            value = getattr(self, key)
+            number = isinstance(value, Real) and not isinstance(value, bool)
+            if not (number and 0 < value < math.inf):
+                raise ValueError(f"{key} = {value!r} is not usable; give a finite number above 0")
+        if not 0 < self.split < 1:
+            raise ValueError(f"split = {self.split!r} is not usable; give a fraction, 0 to 1")
+        if self.skip < 0:
+            raise ValueError(
+                f"skip = {self.skip!r} is negative; give a number of frames, 0 or more"
+            )
+        if self.shuffle and self.scoring != "published":
+            raise ValueError("shuffle = True needs scoring = 'published'; 'clean' never shuffles")
+
+
+@dataclass(frozen=True)
+class Fit:
+    """q targets over T frames, their estimates, and the rows of either part: all (T, q)."""
+
+    target: np.ndarray
+    estimate: np.ndarray
+    train: np.ndarray
+    test: np.ndarray
+
+    def __getitem__(self, index) -> Fit:
+        return Fit(*(a[index] for a in (self.target, self.estimate, self.train, self.test)))
+
+
+def scale_input(u: np.ndarray) -> np.ndarray:
+    """u (T,), any unit, scaled to [-1, 1] by its extremes: the Legendre interval.
+
+    ValueError if u is constant or not finite.
+    """
+    low, high = np.min(u), np.max(u)
+    if not np.isfinite(high - low):
+        raise ValueError("u holds values that are not finite; every input sample must be a number")
+    if low == high:
+        raise ValueError(f"u = {low:g} at every frame; capacity needs an input that varies")
+    return 2.0 * (u - low) / (high - low) - 1.0
+
+
+def legendre_targets(u: np.ndarray, orders: Sequence[int]) -> np.ndarray:
+    """z_k = P_k(u(t)), (T, n_orders), of u (T,) already scaled to [-1, 1]."""
+    return legvander(u, max(orders, default=0))[:, np.asarray(orders, dtype=int)]
+
+
+def recall_targets(u: np.ndarray, lags: Sequence[int]) -> np.ndarray:
+    """z_tau(t) = u(t - tau), (T, n_lags), of u (T,); lags in frames; NaN while t < tau."""
+    targets = np.full((len(u), len(lags)), np.nan)
+    for column, lag in enumerate(lags):
+        targets[lag:, column] = u[: len(u) - lag]
+    return targets
+
+
+def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
+    """u (T - skip,) and readouts (T - skip, p) as floats; ValueError says what is wrong."""
+    if not 0 < sample_rate < math.inf:
+        raise ValueError(f"sample_rate = {sample_rate!r} is not usable; give a rate above 0 Hz")
+    u, readouts = np.asarray(u, dtype=float), np.asarray(readouts, dtype=float)
+    if u.ndim != 1 or readouts.ndim != 2 or len(u) != len(readouts) or not readouts.shape[1]:
+        raise ValueError(
+            f"u has shape {u.shape} and readouts {readouts.shape}; "
+            "give (T,) and (T, p) with the same number of frames T, and p at least 1"
+        )
+    horizon, skip = options.horizon, options.skip
+    if round(horizon * sample_rate) < 1:
+        raise ValueError(
+            f"horizon = {horizon:g} s is shorter than a frame; give at least {1 / sample_rate:g} s"
+        )
+    # Two horizons: at the longest lag, as many frames are left to split as the lag took away.
+    if len(u) - skip < 2 * horizon * sample_rate:
+        raise ValueError(
+            f"duration = {len(u) / sample_rate:g} s is too short for a recall horizon of "
+            f"{horizon:g} s and a split beyond it; record at least "
+            f"{2 * horizon + skip / sample_rate:g} s"
+        )
+    u, readouts = u[skip:], readouts[skip:]
+    finite = np.isfinite(readouts)
+    if not finite.all():
+        frame, signal = np.argwhere(~finite)[0]
+        raise ValueError(
+            f"readouts[{frame + skip}, {signal}] = {readouts[frame, signal]} is not "
+            "finite; an unstable run has no capacity, so give a recording that stays finite"
+        )
+    return u, readouts
+
+
+def fit_targets(u, readouts, orders, lags, horizon, options) -> tuple[Fit, Fit]:
+    """Fits of P_k for the orders and of recall for the lags; lags and horizon in frames."""
+    u, n = scale_input(u), len(orders)
+    target = np.hstack([legendre_targets(u, orders), recall_targets(u, lags)])
+    if options.scoring == "clean":
+        starts = np.full(target.shape[1], horizon)
+        fitted = slice(horizon, _training_end(horizon, len(u), options.split))
+    else:
+        starts = np.array([0] * n + list(lags))
+        fitted = slice(None)
+    x = _standardise(readouts, fitted)
+    if options.shuffle:
+        nonlinear = _fit_shuffled(x, target[:, :n], options)
+        return nonlinear, _fit(x, target[:, n:], starts[n:], options)
+    fit = _fit(x, target, starts, options)
+    return fit[:, :n], fit[:, n:]
+
+
+def _standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
+    """Readouts with mean 0 and variance 1 over the fitted rows; a still column becomes 0."""
+    mean = readouts[fitted].mean(axis=0)
+    x = readouts - mean
+    deviation = np.sqrt(np.einsum("ij,ij->j", x[fitted], x[fitted]) / len(x[fitted]))
+    # Still: no motion beyond the round-off of its own mean, which dividing would amplify.
+    still = deviation <= len(x) * np.finfo(float).eps * np.abs(mean)
+    x /= np.where(still, np.inf, deviation)
+    return x
+
+
+def _training_end(start: int, frames: int, split: float) -> int:
+    """First test frame of a split of frames [start, frames), whose test part rounds up."""
+    return start + math.floor(split * (frames - start) + 1e-9)  # 0.57 * 100 falls short of 57
+
+
+def _fit(x, target, starts, options) -> Fit:
+    """Ridge estimates of target (T, q) from x (T, p); target j is split from row starts[j] on."""
+    row = np.arange(len(x))[:, None]
+    ends = np.array([_training_end(start, len(x), options.split) for start in starts])
+    train, test = (row >= starts) & (row < ends), row >= ends
+    mean = mean_of(target, train)
+    cross = x.T @ np.where(train, target - mean, 0.0)
+    weights, offset = _solve_windows(x, cross, starts, ends, options.alpha)
+    estimate = x @ weights
+    estimate += mean - offset
+    return Fit(target, estimate, train, test)
+
+
+def _fit_shuffled(x, target, options) -> Fit:
+    """As `_fit`, on the rows that sklearn's train_test_split(random_state=42) would choose."""
+    order = np.random.RandomState(SHUFFLE_SEED).permutation(len(x))
+    tested = len(x) - _training_end(0, len(x), options.split)
+    order = np.roll(order, -tested)  # sklearn tests on the first of the permutation, `_fit` last
+    fit = _fit(x[order], target[order], np.zeros(target.shape[1], dtype=int), options)
+    return fit[np.argsort(order)]
+
+
+def _solve_windows(x, cross, starts, ends, alpha) -> tuple[np.ndarray, np.ndarray]:
+    """Ridge weights (p, q), and (q,) what they make of the mean of x over each training window.
+
+    x (T, p) has a mean near 0; cross (p, q) = x^T (z - mean z) over the window. Windows differ by
+    few rows, so the first one's Gram matrix is kept and only the change from it is updated: the
+    change is small, and so is the round-off of hundreds of updates, which collinear readouts need.
+    """
+    weights, offset = np.empty_like(cross), np.empty(cross.shape[1])
+    start, end = starts.min(), ends.min()
+    gram = blas.dsyrk(1.0, x[start:end].T, lower=1)
+    change, system = np.zeros_like(gram), np.empty_like(gram)
+    total = x[start:end].sum(axis=0)
+    for next_start in np.unique(starts):
+        same = starts == next_start
+        next_end = ends[same][0]
+        for sign, rows in ((-1.0, x[start:next_start]), (1.0, x[end:next_end])):
+            if len(rows):
+                change = blas.dsyrk(sign, rows.T, beta=1.0, c=change, lower=1, overwrite_c=1)
+                total += sign * rows.sum(axis=0)
+        start, end = next_start, next_end
+        mean = total / (end - start)
+        np.add(gram, change, out=system)
+        system = blas.dsyr(start - end, mean, a=system, lower=1, overwrite_a=1)
+        np.einsum("ii->i", system)[:] += alpha
+        try:
+            factor = cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
+        except LinAlgError:
+            raise ValueError(
+                f"alpha = {alpha:g} is lost in the round-off of these readouts; give a larger one"
+            ) from None
+        weights[:, same] = cho_solve(factor, cross[:, same], check_finite=False)
+        offset[same] = mean @ weights[:, same]
+    return weights, offset
+
+
+def mean_of(values: np.ndarray, part: np.ndarray) -> np.ndarray:
+    return np.where(part, values, 0.0).sum(axis=0) / part.sum(axis=0)

@@ -1,0 +1,21 @@
+# Responses to capacities.
+
+
+rule capacity:
+    input:
+        code=code("capacity.py", "dataset.py"),
+        response="<results>/runs/{run}/response.nc",
+    output:
+        "<results>/runs/{run}/capacity.nc",
+    log:
+        "<logs>/capacity/{run}.log",
+    benchmark:
+        "<benchmarks>/capacity/{run}.tsv"
+    conda:
+        "../../envs/environment.yaml"
+    params:
+        scoring=lambda wildcards: RUNS[wildcards.run].scoring,
+    message:
+        "Scoring {wildcards.run}"
+    script:
+        "../scripts/capacity.py"

@@ -1,0 +1,49 @@
+# Scenes to responses.
+
+
+rule warmup:
+    input:
+        code=code("engines/*.py"),
+    output:
+        touch("<results>/warmup.done"),
+    log:
+        "<logs>/warmup.log",
+    benchmark:
+        "<benchmarks>/warmup.tsv"
+    conda:
+        "../../envs/environment.yaml"
+    message:
+        "Compiling the engines, once"
+    script:
+        "../scripts/warmup.py"
+
+
+rule simulate:
+    input:
+        code=code(
+            "buckling.py",
+            "dataset.py",
+            "drive.py",
+            "engines/*.py",
+            "mesh.py",
+            "network.py",
+            "scene.py",
+            "simulation.py",
+        ),
+        # ancient: compiling again is no reason to simulate again
+        compiled=ancient("<results>/warmup.done"),
+    output:
+        "<results>/runs/{run}/response.nc",
+    log:
+        "<logs>/simulate/{run}.log",
+    benchmark:
+        "<benchmarks>/simulate/{run}.tsv"
+    conda:
+        "../../envs/environment.yaml"
+    params:
+        scene=lambda wildcards: RUNS[wildcards.run].scene.to_json(),
+        numerics=lambda wildcards: RUNS[wildcards.run].numerics,
+    message:
+        "Simulating {wildcards.run}"
+    script:
+        "../scripts/simulate.py"

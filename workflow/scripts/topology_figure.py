@@ -1,0 +1,18 @@
+"""Fig. 1 in one setup."""
+
+from logs import to_log
+
+from fiberweb.dataset import load
+from fiberweb.plotting.topology import draw
+from fiberweb.tables import read
+
+to_log(snakemake.log[0])
+source = snakemake.input
+draw(
+    read(source.table),
+    read(source.curves),
+    read(source.floors),
+    load(source.traces),
+    snakemake.params.setup,
+    snakemake.output.png,
+)

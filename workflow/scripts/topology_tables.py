@@ -1,0 +1,14 @@
+"""Tables of the topology study in one setup, and the example computations of Fig. 1d."""
+
+from logs import to_log
+
+from fiberweb import tables
+from fiberweb.capacity import traces
+from fiberweb.dataset import load, save
+
+to_log(snakemake.log[0])
+source, scoring = snakemake.input, snakemake.params.scoring
+tables.write(tables.topology(source.capacities), snakemake.output.table)
+tables.write(tables.curves(source.capacities), snakemake.output.curves)
+tables.write(tables.floors(source.example, **scoring), snakemake.output.floors)
+save(traces(load(source.example), **scoring), snakemake.output.traces)

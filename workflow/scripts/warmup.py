@@ -1,0 +1,8 @@
+"""Compile every engine into the cache that all jobs share."""
+
+from logs import to_log
+
+from fiberweb.engines import warmup
+
+to_log(snakemake.log[0])
+warmup()
