@@ -21,9 +21,11 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     """What a run gave, with all that is needed to repeat it.
 
     Returns:
-        `input(time)` dimensionless; `displacement(time, readout, axis)` in metres; coordinates
+        `input(time)` dimensionless; `displacement(time, readout, axis)` in metres;
+        `energy(time, form)` in joules, with work and dissipation since the start; coordinates
         time (s), axis (x, y), and for each readout kind, rest_x, rest_y (m), fibre and section;
-        attributes status ("ok" or "unstable"), unstable_at (s), engine, elements_per_section,
+        attributes status ("ok" or "unstable"), unstable_at (s), energy_residual (the largest
+        kinetic + elastic + dissipated - work over the largest work), engine, elements_per_section,
         time_step (s), setup, sample_rate (Hz), versions, engine_source (a hash) and the scene as
         JSON. Nothing in it depends on the clock.
     """
@@ -42,10 +44,12 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
                 recording.displacement.astype(np.float32),
                 {"long_name": "displacement from rest", "units": "m"},
             ),
+            "energy": (("time", "form"), recording.energy, {"long_name": "energy", "units": "J"}),
         },
         coords={
             "time": ("time", scene.times, {"units": "s"}),
             "axis": ["x", "y"],
+            "form": ["kinetic", "elastic", "work", "dissipated"],
             "kind": ("readout", [readout.kind for readout in mesh.readouts]),
             "rest_x": ("readout", rest[:, 0], {"units": "m"}),
             "rest_y": ("readout", rest[:, 1], {"units": "m"}),
@@ -67,6 +71,10 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     )
     if unstable:
         data.attrs["unstable_at"] = recording.unstable_at
+    kinetic, elastic, work, dissipated = recording.energy[: -1 if unstable else None].T
+    if np.isfinite(work).any():
+        residual = np.abs(kinetic + elastic + dissipated - work)
+        data.attrs["energy_residual"] = float(np.nanmax(residual) / np.nanmax(np.abs(work)))
     return data
 
 

@@ -54,7 +54,10 @@ class Run:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""
         from fiberweb.engines.choose import resolve
 
-        resolve(self.scene, **self.numerics)
+        try:
+            resolve(self.scene, **self.numerics)
+        except ValueError as error:
+            raise ValueError(f"{self.name}: {error}") from None
 
 
 def topology(config: Config, setup: str) -> Iterator[Scene]:

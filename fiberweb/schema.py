@@ -23,16 +23,17 @@ def schema() -> str:
 def table() -> str:
     """Every key with default, unit, range, meaning and section of the paper, in Markdown."""
     lines = ["| key | default | unit | range | meaning | paper |", "|---|---|---|---|---|---|"]
-    lines += ["| " + " | ".join(row) + " |" for row in _rows(Config, Config())]
+    lines += ["| " + " | ".join(row) + " |" for row in rows(Config())]
     return "\n".join(lines) + "\n"
 
 
-def _rows(section: type[Section], values: Section, prefix: str = "") -> Iterator[tuple]:
+def rows(section: Section, prefix: str = "") -> Iterator[tuple[str, ...]]:
+    """The cells of the table, section by section, for a config of default values."""
     properties = section.model_json_schema()["properties"]
-    for name, field in section.model_fields.items():
-        value = getattr(values, name)
+    for name, field in type(section).model_fields.items():
+        value = getattr(section, name)
         if isinstance(value, Section):
-            yield from _rows(type(value), value, f"{prefix}{name}.")
+            yield from rows(value, f"{prefix}{name}.")
             continue
         extra = field.json_schema_extra
         default = json.dumps(value).strip('"')

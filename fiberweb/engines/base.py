@@ -11,6 +11,7 @@ from fiberweb.mesh import Mesh
 from fiberweb.scene import Scene
 
 AUTHORS_STEP = 5e-6  # s
+CHUNK = 250  # samples between two returns to Python
 RUNAWAY = 10.0  # a node faster than this many axial wave speeds has left the physics
 
 
@@ -34,10 +35,13 @@ class Recording:
 
     Attributes:
         displacement: of each readout, shape (samples, readouts, 2), m; NaN once unstable.
+        energy: kinetic, elastic, work done so far, dissipated so far, shape (samples, 4), J;
+            NaN once unstable, and throughout for an engine that keeps no books.
         unstable_at: when the run left the physics (s), or None.
     """
 
     displacement: np.ndarray
+    energy: np.ndarray
     unstable_at: float | None
 
 
@@ -50,3 +54,24 @@ def readout_arrays(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights of the readouts, both of shape (readouts, 2)."""
     nodes = np.array([readout.nodes for readout in mesh.readouts], dtype=np.int64)
     return nodes, np.array([readout.weights for readout in mesh.readouts])
+
+
+def record_in_chunks(scene: Scene, readouts: int, advance) -> Recording:
+    """Call a kernel chunk by chunk, so that an interrupt is seen between two of them.
+
+    Args:
+        scene: how long and how often.
+        readouts: how many.
+        advance: function of the first sample, and of the parts of displacement and energy to
+            fill; returns how many samples were good.
+    """
+    displacement = np.full((scene.samples, readouts, 2), np.nan)
+    energy = np.full((scene.samples, 4), np.nan)
+    for first in range(0, scene.samples, CHUNK):
+        part = slice(first, first + CHUNK)
+        good = advance(first, displacement[part], energy[part])
+        if good < len(displacement[part]):
+            displacement[first + good :] = np.nan
+            energy[first + good :] = np.nan
+            return Recording(displacement, energy, (first + good) / scene.sample_rate)
+    return Recording(displacement, energy, None)

@@ -6,7 +6,7 @@ from fiberweb.errors import unknown_key
 from fiberweb.scene import Scene
 
 ENGINES = ("kirchhoff", "cosserat", "elastica")
-ACCURACIES = {"draft": 4, "standard": 8, "fine": 16, "reference": 32}  # elements per section
+ACCURACIES = {"draft": 2, "standard": 4, "fine": 8, "reference": 16}  # elements per section
 SAFETY = 0.9  # of the linear limit: compression and tension stiffen a fibre a little
 
 

@@ -88,6 +88,7 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
     rest = mesh.position
     limit = RUNAWAY * mesh.scene.wave_speed * MM
     out = np.full((mesh.scene.samples, len(nodes), 2), np.nan)
+    unbooked = np.full((mesh.scene.samples, 4), np.nan)
     stepper, time = ea.PositionVerlet(), 0.0
     for sample in range(mesh.scene.samples):
         at = np.concatenate([rod.position_collection[:2].T for rod in rods]) / MM - rest
@@ -95,10 +96,10 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
         fastest = max(np.abs(rod.velocity_collection).max() for rod in rods)
         if not fastest < limit:
             out[sample:] = np.nan
-            return Recording(out, sample / mesh.scene.sample_rate)
+            return Recording(out, unbooked, sample / mesh.scene.sample_rate)
         if sample + 1 < mesh.scene.samples:
             time = run_steps(simulator, stepper, time, step, per_sample)
-    return Recording(out, None)
+    return Recording(out, unbooked, None)
 
 
 def run_steps(simulator, stepper, time: float, step: float, count: int) -> float:

@@ -41,3 +41,5 @@ llvm.set_option("", "-runtime-memory-check-threshold=500")
 # Division by zero gives inf, as in numpy: a test in the loop would keep it scalar. Contraction
 # allows fused multiply-add and nothing else, so results repeat to the bit.
 kernel = njit(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)
+# The same with sums in any order, so that they vectorise: still the same order every time.
+summing = njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, nogil=True)

@@ -1,28 +1,36 @@
 """Planar Kirchhoff rods: no shear, no rotary inertia, no dilatation of the cross-section.
 
-A fibre is a chain of nodes. Its energy is that of its edges' stretch, with PyElastica's
-stress EA (l - l0) / l, and of the angles phi between them, with moment (EI / D) f(phi) where
+A fibre is a chain of nodes; its energy is that of its edges' stretch and of the angles between
+them. Stress is PyElastica's, EA (1 - l0 / l). Bending is fourth order in the element length:
 
-    f(phi) = 3 sin(phi) / (2 + cos(phi)) = phi (1 - phi^4 / 180 + ...)
+- A beam loaded at its nodes is a cubic spline, and its energy k^T A k EI / 2 follows from the
+  turns phi = A k at the nodes by Clapeyron's three-moment matrix A = l tridiag(1/6, 2/3, 1/6).
+  The inverse of A is expanded about the lumped lengths S to second order, S^-1 + S^-1 X S^-1 +
+  S^-1 X S^-1 X S^-1 with X = S - A, which couples two neighbours on each side. The zeroth
+  order is the usual chain, with moment (EI / S) f(phi), where
 
-needs one division and no arc tangent, and is nowhere stiffer than at phi = 0: the explicit
-limit of the straight rod holds for every shape. Cross-section and rotation dropped, the
-explicit limit is that of axial waves, 4 to 6 times the Cosserat rod's.
+      f(phi) = 3 sin(phi) / (2 + cos(phi)) = phi (1 - phi^4 / 180 + ...)
 
-Time is integrated by leapfrog, as PyElastica's position Verlet with its two half drifts
-joined. Crossings: spring and damper as an exact exponential of the damper over each step, so
-that they set no limit and a stiff damper slips at the speed that its force implies; an
-infinite stiffness makes the nodes one point.
+  needs one division and no arc tangent and is nowhere stiffer than at phi = 0.
+- A curved element is longer than its chord by b^2 / 24, b the angle it turns through. Without
+  this the chord's slope alone carries the axial force and the critical load is wrong at second
+  order, whatever the bending term: that is why statics ask for another constant than waves.
+
+All is derived from one potential, so leapfrog (PyElastica's position Verlet with its half
+drifts joined) keeps energy. Crossings: spring and damper as an exact exponential of the
+damper over each step, so that they set no limit and a stiff damper slips at the speed that
+its force implies; an infinite stiffness makes the nodes one point.
 
 References: Bergou et al., Discrete elastic rods, ACM Trans. Graph. 27 (2008), for the chain;
-Hochbruck and Ostermann, Exponential integrators, Acta Numerica 19 (2010), for the damper.
+Hochbruck and Ostermann, Exponential integrators, Acta Numerica 19 (2010), for the damper;
+Timoshenko, Strength of Materials I (1930), for the three-moment theorem.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import expm
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import connected_components
 
 from fiberweb.engines.base import (
@@ -30,13 +38,14 @@ from fiberweb.engines.base import (
     Numerics,
     Recording,
     readout_arrays,
+    record_in_chunks,
     steps_per_sample,
 )
-from fiberweb.engines.jit import kernel
+from fiberweb.engines.jit import kernel, summing
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.mesh import Mesh
 
-CHUNK = 250  # samples between two returns to Python, where an interrupt is seen
+BOOKING = 0.25e-3  # s between two looks at what is dissipated: well below a network's periods
 
 
 def refuse(mesh: Mesh) -> None:
@@ -54,8 +63,13 @@ def refuse(mesh: Mesh) -> None:
         )
 
 
-def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
+def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
     """Integrate a mesh in the plane; see the module's docstring for the model.
+
+    Args:
+        mesh, numerics: as for every engine.
+        order: 4, or 2 for the usual chain, which is what a Cosserat rod converges to without
+            shear on the same mesh.
 
     Raises:
         ValueError: the scene has a Laplace filter or is the published setup.
@@ -65,53 +79,62 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     per_sample = steps_per_sample(scene, numerics.time_step)
     step = 1.0 / (scene.sample_rate * per_sample)
     nodes, weights = readout_arrays(mesh)
-    samples = scene.samples
-    out = np.full((samples, len(nodes), 2), np.nan)
-    state = State(layout)
-    arrays = _coefficients(mesh, layout, step)
-    limit = RUNAWAY * scene.wave_speed
-    done = 0
-    while done < samples:
-        end = min(samples, done + CHUNK)
-        good = advance(
-            state.chain, state.work, arrays.chain, arrays.joints, mesh.drive,
-            (layout.at[nodes], weights, layout.x, layout.y),
-            (scene.drive_rate, scene.tension_ramp, step, limit, arrays.decay),
-            per_sample, done, out[done:end],
+    size = len(layout.x)
+    state = (layout.x.copy(), layout.y.copy(), np.zeros(size), np.zeros(size))
+    decay, chain = coefficients(mesh, layout, step, order)
+    joints = joint_operators(mesh, layout, step)
+    work = tuple(np.zeros(size) for _ in range(13))
+    books = (np.zeros(2), layout.mass, scene.damping, layout.joints, mesh.joint_stiffness,
+             mesh.joint_damping)  # fmt: skip
+    scalars = (scene.drive_rate, scene.tension_ramp, step, RUNAWAY * scene.wave_speed, decay)
+    readouts = (layout.at[nodes], weights, layout.x, layout.y)
+
+    def advance_to(first, displacement, energy):
+        return advance(
+            state, work, chain, joints, mesh.drive, readouts, books, scalars, per_sample, first,
+            displacement, energy,
         )  # fmt: skip
-        if good < end - done:
-            out[done + good :] = np.nan
-            return Recording(out, (done + good) / scene.sample_rate)
-        done = end
-    return Recording(out, None)
+
+    return record_in_chunks(scene, len(nodes), advance_to)
 
 
-class State:
-    """Positions and velocities over the padded chain, and what the passes leave each other."""
+def coefficients(mesh: Mesh, layout: Layout, step: float, order: int):
+    """Decay of a free velocity over a step, and what the kernel multiplies with."""
+    half = np.exp(-0.5 * mesh.scene.damping * step)
+    stiffness = mesh.scene.bending_stiffness
+    loaded = np.flatnonzero(layout.load_x**2 + layout.load_y**2)
+    bow = layout.edge * layout.solid if order == 4 else np.zeros(len(layout.edge))
+    chain = (
+        mesh.scene.axial_stiffness * layout.solid, layout.edge, 0.5 * bow,
+        3.0 * stiffness * layout.bends / layout.span, layout.bends / layout.span,
+        *(stiffness * band * (order == 4) for band in spline_correction(layout)),
+        half * step * layout.free_x / layout.mass, half * step * layout.free_y / layout.mass,
+        layout.pull_x, layout.pull_y, loaded, layout.load_x[loaded], layout.load_y[loaded],
+    )  # fmt: skip
+    return half * half, chain
 
-    def __init__(self, layout: Layout):
-        size = len(layout.x)
-        self.chain = (layout.x.copy(), layout.y.copy(), np.zeros(size), np.zeros(size))
-        self.work = tuple(np.zeros(size - 1) for _ in range(5)) + tuple(
-            np.zeros(size) for _ in range(3)
-        )
+
+def spline_correction(layout: Layout):
+    """What the spline's energy adds to the lumped one, as a quadratic form in curvatures.
+
+    Returns:
+        Diagonal and first and second upper diagonal of X + X S^-1 X (m), each (n,); the entry i
+        of a diagonal couples node i with i + 0, 1, 2.
+    """
+    matrix = spline_matrix(layout)
+    return [np.r_[matrix.diagonal(k), np.zeros(k)] for k in range(3)]
 
 
-class _coefficients:
-    """Everything constant that the kernel multiplies with."""
-
-    def __init__(self, mesh: Mesh, layout: Layout, step: float):
-        half = np.exp(-0.5 * mesh.scene.damping * step)
-        self.decay = half * half
-        axial = mesh.scene.axial_stiffness * layout.solid
-        kick_x = half * step * layout.free_x / layout.mass
-        kick_y = half * step * layout.free_y / layout.mass
-        loaded = np.flatnonzero(layout.load_x**2 + layout.load_y**2)
-        self.chain = (
-            axial, layout.edge, 3.0 * layout.bend, kick_x, kick_y, layout.pull_x, layout.pull_y,
-            loaded, layout.load_x[loaded], layout.load_y[loaded],
-        )  # fmt: skip
-        self.joints = joint_operators(mesh, layout, step)
+def spline_matrix(layout: Layout) -> csr_array:
+    """X + X S^-1 X of `spline_correction`, shape (n, n), m."""
+    length = layout.edge * layout.solid
+    beside = np.r_[0.0, length] + np.r_[length, 0.0]
+    both = layout.bends[1:] * layout.bends[:-1]
+    excess = layout.bends * (layout.span - beside / 3.0)
+    x = csr_array(
+        diags_array([excess, -both * length / 6.0, -both * length / 6.0], offsets=[0, 1, -1])
+    )
+    return csr_array(x + x @ diags_array(1.0 / layout.span) @ x)
 
 
 def joint_operators(mesh: Mesh, layout: Layout, step: float):
@@ -192,34 +215,60 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
 
 
 @kernel
-def stretch_pass(x0, x1, y0, y1, tx, ty, inverse):
-    """Unit tangents and inverse lengths of the edges."""
+def stretch_pass(x0, x1, y0, y1, tx, ty, inverse, length):
+    """Unit tangents, inverse lengths and lengths of the edges."""
     for i in range(tx.shape[0]):
         dx = x1[i] - x0[i]
         dy = y1[i] - y0[i]
-        r = 1.0 / np.sqrt(dx * dx + dy * dy)
+        q = dx * dx + dy * dy
+        r = 1.0 / np.sqrt(q)
         tx[i] = dx * r
         ty[i] = dy * r
         inverse[i] = r
+        length[i] = q * r
 
 
 @kernel
-def moment_pass(tx0, tx1, ty0, ty1, bend3, moment):
-    """Moment at inner nodes from the edges on either side."""
+def turn_pass(tx0, tx1, ty0, ty1, bend3, over_span, moment, curvature, slope):
+    """Lumped moment at inner nodes, sine of the turn over the span, and its derivative."""
     for i in range(moment.shape[0]):
-        cross = tx0[i] * ty1[i] - ty0[i] * tx1[i]
-        dot = tx0[i] * tx1[i] + ty0[i] * ty1[i]
-        moment[i] = bend3[i] * cross / (2.0 + dot)
+        sine = tx0[i] * ty1[i] - ty0[i] * tx1[i]
+        cosine = tx0[i] * tx1[i] + ty0[i] * ty1[i]
+        moment[i] = bend3[i] * sine / (2.0 + cosine)
+        curvature[i] = over_span[i] * sine
+        slope[i] = over_span[i] * cosine
 
 
 @kernel
-def force_pass(tx, ty, inverse, axial, edge, moment0, moment1, fx, fy):
+def tension_pass(curvature0, curvature1, inverse, length, axial, edge, half, tension, bowing):
+    """Tension of each edge with its bow, and the derivative of its energy by curvature."""
+    for i in range(tension.shape[0]):
+        b = half[i] * (curvature0[i] + curvature1[i])
+        longer = b * b * (1.0 / 24.0)
+        tension[i] = axial[i] * (1.0 - edge[i] * inverse[i] + longer)
+        excess = length[i] - edge[i] + edge[i] * longer
+        bowing[i] = axial[i] * excess * half[i] * b * (1.0 / 12.0)
+
+
+@kernel
+def moment_pass(
+    moment, slope, c, c_up, c_up2, c_down, c_down2, s, s_up, s_up2, s_down, s_down2,
+    bowing0, bowing1,
+):  # fmt: skip
+    """Add to the lumped moments those of the spline and of the bow."""
+    for i in range(moment.shape[0]):
+        curved = c[i] * s[i] + (c_up[i] * s_up[i] + c_down[i] * s_down[i])
+        curved += c_up2[i] * s_up2[i] + c_down2[i] * s_down2[i]
+        moment[i] += slope[i] * (curved + (bowing0[i] + bowing1[i]))
+
+
+@kernel
+def force_pass(tx, ty, inverse, tension, moment0, moment1, fx, fy):
     """Force in each edge: tension along it, moment difference across it."""
     for i in range(fx.shape[0]):
-        tension = axial[i] * (1.0 - edge[i] * inverse[i])
         shear = (moment0[i] - moment1[i]) * inverse[i]
-        fx[i] = tension * tx[i] - shear * ty[i]
-        fy[i] = tension * ty[i] + shear * tx[i]
+        fx[i] = tension[i] * tx[i] - shear * ty[i]
+        fy[i] = tension[i] * ty[i] + shear * tx[i]
 
 
 @kernel
@@ -290,6 +339,15 @@ def record(x, y, vx, vy, nodes, weights, rest_x, rest_y, half, out):
 
 
 @kernel
+def outer_work(ux, uy, fx, fy):
+    """Work of constant forces over displacements (J)."""
+    total = 0.0
+    for i in range(ux.shape[0]):
+        total += fx[i] * ux[i] + fy[i] * uy[i]
+    return total
+
+
+@kernel
 def in_bounds(vx, vy, limit):
     """Whether every velocity is finite and below the limit."""
     for i in range(vx.shape[0]):
@@ -298,56 +356,139 @@ def in_bounds(vx, vy, limit):
     return True
 
 
+@summing
+def squared_speed(vx, vy, mass):
+    """Sum of m v^2 over all nodes (J)."""
+    total = 0.0
+    for i in range(vx.shape[0]):
+        total += mass[i] * (vx[i] * vx[i] + vy[i] * vy[i])
+    return total
+
+
 @kernel
-def advance(chain, work, coefficients, joints, drive, readouts, scalars, per_sample, first, out):
+def joint_power(vx, vy, joints, damping):
+    """Power that the crossings' dampers take (W)."""
+    total = 0.0
+    for j in range(joints.shape[0]):
+        a, b = joints[j, 0], joints[j, 1]
+        total += damping[j] * ((vx[b] - vx[a]) ** 2 + (vy[b] - vy[a]) ** 2)
+    return total
+
+
+@kernel
+def joint_energy(x, y, joints, stiffness):
+    """Energy of the crossings' springs (J); none where the nodes are one point."""
+    total = 0.0
+    for j in range(joints.shape[0]):
+        a, b = joints[j, 0], joints[j, 1]
+        if stiffness[j] < np.inf:
+            total += 0.5 * stiffness[j] * ((x[b] - x[a]) ** 2 + (y[b] - y[a]) ** 2)
+    return total
+
+
+@kernel
+def strain_energy(x, y, chain):
+    """Elastic energy of the fibres at given positions (J); the potential of the passes."""
+    axial, edge, half, bend3, over_span, c, c_up, c_up2 = chain[:8]
+    n = x.shape[0]
+    curvature = np.zeros(n)
+    total = 0.0
+    for i in range(1, n - 1):
+        ax, ay, bx, by = x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i]
+        over = 1.0 / np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by))
+        cosine = (ax * bx + ay * by) * over
+        curvature[i] = over_span[i] * (ax * by - ay * bx) * over
+        total -= bend3[i] * np.log((2.0 + cosine) / 3.0)
+    for i in range(n - 1):
+        l = np.sqrt((x[i + 1] - x[i]) ** 2 + (y[i + 1] - y[i]) ** 2)
+        b = half[i] * (curvature[i] + curvature[i + 1])
+        longer = b * b / 24.0
+        stretch = l - edge[i] - edge[i] * np.log(l / edge[i])
+        total += axial[i] * (stretch + (l - edge[i]) * longer + 0.5 * edge[i] * longer * longer)
+    for i in range(n - 2):
+        k = curvature[i]
+        total += k * (0.5 * c[i] * k + c_up[i] * curvature[i + 1] + c_up2[i] * curvature[i + 2])
+    return total
+
+
+@kernel
+def advance(
+    state, work, chain, joints, drive, readouts, books, scalars, per_sample, first, out, energy
+):
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Args:
-        chain: x, y (m; half a step ahead of the time) and vx, vy (m/s), each (n,).
-        work: tx, ty, inverse, fx, fy (n - 1,); moment and outer force in x and y (n,).
-        coefficients, joints: see `_coefficients` and `joint_operators`.
+        state: x, y (m; half a step ahead of the time) and vx, vy (m/s), each (n,).
+        work: scratch, 13 arrays of (n,).
+        chain, joints: see `coefficients` and `joint_operators`.
         drive: spline coefficients, (intervals, 4).
         readouts: nodes, weights (readouts, 2), rest x, rest y (n,).
+        books: work done and dissipated so far (2,), mass (n,), damping rate, joints, their
+            stiffness and damping.
         scalars: drive rate, tension ramp, step, velocity limit, decay per step.
         per_sample: steps between samples.
         first: number of the first sample of `out`.
-        out: (samples, readouts, 2), filled.
+        out: displacement, (samples, readouts, 2), filled.
+        energy: kinetic, elastic, work done, dissipated (samples, 4), filled.
 
     Returns:
         How many samples were recorded before the run became unstable.
     """
-    x, y, vx, vy = chain
-    tx, ty, inverse, fx, fy, moment, outer_x, outer_y = work
-    axial, edge, bend3, kick_x, kick_y, pull_x, pull_y, loaded, load_x, load_y = coefficients
+    x, y, vx, vy = state
+    (axial, edge, half, bend3, over_span, c, c_up, c_up2, kick_x, kick_y, pull_x, pull_y,
+     loaded, load_x, load_y) = chain  # fmt: skip
     a_nodes, b_nodes, p, q, s, share_a, share_b, starts, members, offsets, operators = joints
     nodes, weights, rest_x, rest_y = readouts
+    done, mass, damping, ties, tie_stiffness, tie_damping = books
     drive_rate, ramp_time, step, limit, decay = scalars
     # views are made once: at a few hundred elements they would cost a fifth of the step
+    n = x.shape[0]
     x0, x1, y0, y1 = x[:-1], x[1:], y[:-1], y[1:]
-    tx0, tx1, ty0, ty1 = tx[:-1], tx[1:], ty[:-1], ty[1:]
-    moment0, moment1, inner_moment, inner_bend = moment[:-1], moment[1:], moment[1:-1], bend3[1:-1]
-    xi, yi, vxi, vyi = x[1:-1], y[1:-1], vx[1:-1], vy[1:-1]
-    fx0, fx1, fy0, fy1 = fx[:-1], fx[1:], fy[:-1], fy[1:]
-    kxi, kyi, oxi, oyi = kick_x[1:-1], kick_y[1:-1], outer_x[1:-1], outer_y[1:-1]
+    tx, ty, inverse, length = work[0][1:], work[1][1:], work[2][1:], work[3][1:]
+    tension, bowing, fx, fy = work[4][1:], work[5][1:], work[6][1:], work[7][1:]
+    moment, curvature, slope = work[8], work[9], work[10]
+    outer_x, outer_y = work[11], work[12]
     old, kicked = np.zeros(members.shape[0]), np.zeros(members.shape[0])
+    every = max(1, int(BOOKING / step))
     for sample in range(out.shape[0]):
         record(x, y, vx, vy, nodes, weights, rest_x, rest_y, 0.5 * step, out[sample])
-        if not in_bounds(vx, vy, limit):
-            return sample
+        here_x, here_y = x - 0.5 * step * vx, y - 0.5 * step * vy
+        energy[sample, 0] = 0.5 * squared_speed(vx, vy, mass)
+        energy[sample, 1] = strain_energy(here_x, here_y, chain)
+        energy[sample, 1] += joint_energy(here_x, here_y, ties, tie_stiffness)
+        pulled = outer_work(here_x - rest_x, here_y - rest_y, pull_x, pull_y)
         start = (first + sample) * per_sample
         ramp = min(1.0, start * step / ramp_time) if ramp_time > 0.0 else 1.0
-        for i in range(outer_x.shape[0]):
+        energy[sample, 2] = done[0] + ramp * pulled
+        energy[sample, 3] = done[1]
+        if not in_bounds(vx, vy, limit):
+            return sample
+        # the pull is a potential while it is constant; when it grows, what it holds changes
+        grown = min(1.0, (start + per_sample) * step / ramp_time) if ramp_time > 0.0 else 1.0
+        for i in range(n):
             outer_x[i] = ramp * pull_x[i]
             outer_y[i] = ramp * pull_y[i]
         for k in range(start, start + per_sample):
             u = drive_value(drive, drive_rate, (k + 0.5) * step)
             for i in range(loaded.shape[0]):
-                n = loaded[i]
-                outer_x[n] = ramp * pull_x[n] + u * load_x[i]
-                outer_y[n] = ramp * pull_y[n] + u * load_y[i]
-            stretch_pass(x0, x1, y0, y1, tx, ty, inverse)
-            moment_pass(tx0, tx1, ty0, ty1, inner_bend, inner_moment)
-            force_pass(tx, ty, inverse, axial, edge, moment0, moment1, fx, fy)
+                m = loaded[i]
+                outer_x[m] = ramp * pull_x[m] + u * load_x[i]
+                outer_y[m] = ramp * pull_y[m] + u * load_y[i]
+                done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])
+            stretch_pass(x0, x1, y0, y1, tx, ty, inverse, length)
+            turn_pass(
+                tx[:-1], tx[1:], ty[:-1], ty[1:], bend3[1:-1], over_span[1:-1], moment[1:-1],
+                curvature[1:-1], slope[1:-1],
+            )  # fmt: skip
+            tension_pass(
+                curvature[:-1], curvature[1:], inverse, length, axial, edge, half, tension, bowing
+            )
+            moment_pass(
+                moment[2:-2], slope[2:-2], c[2:-2], c_up[2:-2], c_up2[2:-2], c_up[1:-3],
+                c_up2[: n - 4], curvature[2:-2], curvature[3:-1], curvature[4:], curvature[1:-3],
+                curvature[: n - 4], bowing[1:-2], bowing[2:-1],
+            )  # fmt: skip
+            force_pass(tx, ty, inverse, tension, moment[:-1], moment[1:], fx, fy)
             pair_pass(
                 x, vx, fx, outer_x, kick_x, a_nodes, b_nodes, p, q, s, share_a, share_b, decay
             )
@@ -363,6 +504,18 @@ def advance(chain, work, coefficients, joints, drive, readouts, scalars, per_sam
                     y, vy, fy, outer_y, kick_y, starts, members, offsets, operators, decay, old,
                     kicked,
                 )  # fmt: skip
-            kick_pass(xi, vxi, fx0, fx1, oxi, kxi, decay, step)
-            kick_pass(yi, vyi, fy0, fy1, oyi, kyi, decay, step)
+            kick_pass(x[1:-1], vx[1:-1], fx[:-1], fx[1:], outer_x[1:-1], kick_x[1:-1], decay, step)
+            kick_pass(y[1:-1], vy[1:-1], fy[:-1], fy[1:], outer_y[1:-1], kick_y[1:-1], decay, step)
+            for i in range(loaded.shape[0]):
+                m = loaded[i]
+                done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])
+            if (k - start) % every == 0:
+                span = min(every, start + per_sample - k) * step
+                lost = damping * squared_speed(vx, vy, mass)
+                done[1] += span * (lost + joint_power(vx, vy, ties, tie_damping))
+        if grown > ramp:
+            pulled = outer_work(
+                x - 0.5 * step * vx - rest_x, y - 0.5 * step * vy - rest_y, pull_x, pull_y
+            )
+            done[0] -= (grown - ramp) * pulled
     return out.shape[0]

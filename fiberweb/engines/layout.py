@@ -27,8 +27,9 @@ class Layout:
         x, y: rest positions, shape (n,), m.
         edge: rest length of edges, shape (n - 1,), m; any positive number at gaps.
         solid: 1 on elements and 0 on gaps, shape (n - 1,).
-        bend: EI over the length that a node's curvature spans, shape (n,), N m; 0 where no
-            moment is carried.
+        bends: 1 where a moment is carried and 0 where not, shape (n,).
+        span: rest length that a node's curvature spans, shape (n,), m: half of either element
+            beside it, of the one inside at a clamp; 1 where no moment is carried.
         voronoi: half the sum of the neighbouring elements' rest lengths, shape (n,), m.
         mass: of each node, shape (n,), kg; 1 at ghosts.
         free_x, free_y: 1 where a node may move and 0 where not, shape (n,).
@@ -41,7 +42,8 @@ class Layout:
     y: np.ndarray
     edge: np.ndarray
     solid: np.ndarray
-    bend: np.ndarray
+    bends: np.ndarray
+    span: np.ndarray
     voronoi: np.ndarray
     mass: np.ndarray
     free_x: np.ndarray
@@ -61,8 +63,7 @@ def lay_out(mesh: Mesh) -> Layout:
     position = np.zeros((size, 2))
     position[at] = mesh.position
     edge, solid = np.ones(size - 1), np.zeros(size - 1)
-    bend, voronoi = np.zeros(size), np.ones(size)
-    stiffness = mesh.scene.bending_stiffness
+    bends, span, voronoi = np.zeros(size), np.ones(size), np.ones(size)
     for fibre in range(fibres):
         near, far = at[mesh.first[fibre]], at[mesh.first[fibre + 1] - 1]
         lengths = mesh.edges(fibre)
@@ -70,9 +71,10 @@ def lay_out(mesh: Mesh) -> Layout:
         solid[near:far] = 1.0
         voronoi[near + 1 : far] = 0.5 * (lengths[1:] + lengths[:-1])
         voronoi[near] = edge[near - 1] = lengths[0]
-        bend[near + 1 : far] = stiffness / voronoi[near + 1 : far]
+        bends[near + 1 : far] = 1.0
+        span[near + 1 : far] = voronoi[near + 1 : far]
         if mesh.clamped[fibre]:
-            bend[near] = stiffness / (0.5 * lengths[0])
+            bends[near], span[near] = 1.0, 0.5 * lengths[0]
         position[near - 1] = 2 * position[near] - position[near + 1]
     position[-1] = 2 * position[-2] - position[-3]
     mass = _pad(at, size, mesh.masses(), fill=1.0)
@@ -83,7 +85,8 @@ def lay_out(mesh: Mesh) -> Layout:
         y=position[:, 1].copy(),
         edge=edge,
         solid=solid,
-        bend=bend,
+        bends=bends,
+        span=span,
         voronoi=voronoi,
         mass=mass,
         free_x=_pad(at, size, free[:, 0]),

@@ -15,6 +15,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
 from fiberweb.engines.cosserat import SHEAR_FACTOR
+from fiberweb.engines.kirchhoff import spline_matrix
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.mesh import Mesh
 
@@ -23,33 +24,33 @@ def largest_step(mesh: Mesh, engine: str) -> float:
     """The largest stable step (s) of "kirchhoff", "cosserat" or "elastica" on a mesh, without
     the Laplace filter (which lets larger steps through by wiping out the modes they excite)."""
     layout = lay_out(mesh)
-    planar_cosserat = engine != "kirchhoff"
-    strains, stiffness, mass = (_cosserat if planar_cosserat else _kirchhoff)(mesh, layout)
-    finite = np.isfinite(mesh.joint_stiffness)
-    gaps = _joint_gaps(layout, finite, strains.shape[1])
-    spring = np.repeat(mesh.joint_stiffness[finite], 2)
+    explicit_damper = engine != "kirchhoff" and mesh.joint_damping.any()
+    stiffness, mass = (_kirchhoff if engine == "kirchhoff" else _cosserat)(mesh, layout)
     root = diags_array(1.0 / np.sqrt(mass))
-    elastic = _scaled(vstack([strains, gaps]), np.r_[stiffness, spring], root)
-    if not (planar_cosserat and mesh.joint_damping.any()):
-        return 2.0 / np.sqrt(_largest(elastic))
-    damper = _scaled(gaps, np.repeat(mesh.joint_damping[finite], 2), root)
-    highest = 2.0 / np.sqrt(_largest(elastic))
+    finite = np.isfinite(mesh.joint_stiffness)
+    gaps = _joint_gaps(layout, finite, len(mass))
+
+    def scaled(matrix):
+        return csr_array(root @ matrix @ root)
+
+    def between_joints(values):
+        return gaps.T @ diags_array(np.repeat(values[finite], 2)) @ gaps
+
+    stiffness = scaled(stiffness + between_joints(mesh.joint_stiffness))
+    highest = 2.0 / np.sqrt(_largest(stiffness))
+    if not explicit_damper:
+        return highest
+    damper = scaled(between_joints(mesh.joint_damping))
     return brentq(
-        lambda h: _largest(vstack([h * elastic, np.sqrt(2 * h) * damper])) - 4.0,
+        lambda h: _largest(h * h * stiffness + 2 * h * damper) - 4.0,
         1e-3 * highest, highest, rtol=1e-4,
     )  # fmt: skip
 
 
-def _scaled(rows, weights, root) -> csr_array:
-    """A with A^T A = M^-1/2 (rows^T weights rows) M^-1/2."""
-    return csr_array(diags_array(np.sqrt(weights)) @ rows @ root)
-
-
-def _largest(half) -> float:
-    """Largest eigenvalue of half^T half."""
-    product = half.T @ half
-    start = np.random.RandomState(0).standard_normal(product.shape[0])
-    return float(eigsh(product, k=1, which="LA", v0=start, return_eigenvectors=False)[0])
+def _largest(matrix) -> float:
+    """Largest eigenvalue of a symmetric matrix."""
+    start = np.random.RandomState(0).standard_normal(matrix.shape[0])
+    return float(eigsh(matrix, k=1, which="LA", v0=start, return_eigenvectors=False)[0])
 
 
 def _directions(layout: Layout):
@@ -76,18 +77,25 @@ def _differences(layout: Layout, columns: int):
 
 
 def _kirchhoff(mesh: Mesh, layout: Layout):
-    """Strains as a matrix over displacements, their stiffness, and the masses."""
+    """Stiffness matrix over displacements, and the masses."""
     size = len(layout.x)
     solid = np.flatnonzero(layout.solid)
     axial, lateral = _differences(layout, 2 * size)
-    number = np.full(size, -1)  # element that starts at a node
-    number[solid] = np.arange(len(solid))
-    bent = np.flatnonzero(layout.bend)
-    after, before = number[bent], number[bent - 1]
-    slope = csr_array(diags_array(1.0 / layout.edge[solid]) @ lateral)
-    turn = slope[after] - csr_array(diags_array((before >= 0).astype(float)) @ slope[before])
-    stiffness = np.r_[mesh.scene.axial_stiffness / layout.edge[solid], layout.bend[bent]]
-    return vstack([axial, turn]), stiffness, np.tile(layout.mass, 2)
+    slope = _rows(diags_array(1.0 / layout.edge[solid]) @ lateral, solid, size - 1)
+    after = _rows(slope, np.arange(size - 1), size)
+    before = _rows(slope, np.arange(1, size), size)
+    curvature = diags_array(layout.bends / layout.span) @ (after - before)
+    spline = diags_array(layout.span * layout.bends) + spline_matrix(layout)
+    scene = mesh.scene
+    stretching = axial.T @ diags_array(scene.axial_stiffness / layout.edge[solid]) @ axial
+    bending = scene.bending_stiffness * (curvature.T @ spline @ curvature)
+    return stretching + bending, np.tile(layout.mass, 2)
+
+
+def _rows(matrix, at: np.ndarray, rows: int) -> csr_array:
+    """The rows of a matrix put at given places of one with more rows."""
+    place = csr_array((np.ones(len(at)), (at, np.arange(len(at)))), shape=(rows, len(at)))
+    return csr_array(place @ matrix)
 
 
 def _cosserat(mesh: Mesh, layout: Layout):
@@ -96,25 +104,23 @@ def _cosserat(mesh: Mesh, layout: Layout):
     solid = np.flatnonzero(layout.solid)
     columns = 2 * size + size - 1
     axial, lateral = _differences(layout, columns)
-    edge = layout.edge[solid]
-    rows = np.arange(len(solid))
+    edge, rows = layout.edge[solid], np.arange(len(solid))
     angle = csr_array((edge, (rows, 2 * size + solid)), shape=(len(solid), columns))
-    bent = np.flatnonzero(layout.bend)
-    inside = layout.solid[bent - 1]
-    rows = np.arange(len(bent))
+    bent = np.flatnonzero(layout.bends)
+    rows = np.tile(np.arange(len(bent)), 2)
     turn = csr_array(
-        (np.r_[np.ones(len(bent)), -inside],
-         (np.tile(rows, 2), np.r_[2 * size + bent, 2 * size + bent - 1])),
+        (np.r_[np.ones(len(bent)), -layout.solid[bent - 1]],  # a wall does not turn
+         (rows, np.r_[2 * size + bent, 2 * size + bent - 1])),
         shape=(len(bent), columns),
     )  # fmt: skip
     scene = mesh.scene
     shear = scene.axial_stiffness / 3.0 * SHEAR_FACTOR
-    stiffness = np.r_[scene.axial_stiffness / edge, shear / edge, layout.bend[bent]]
+    strains = vstack([axial, lateral - angle, turn])
+    moduli = np.r_[
+        scene.axial_stiffness / edge, shear / edge, scene.bending_stiffness / layout.span[bent]
+    ]
     inertia = scene.density * np.pi * scene.diameter**4 / 64 * layout.edge
-    return (
-        vstack([axial, lateral - angle, turn]), stiffness,
-        np.r_[np.tile(layout.mass, 2), inertia],
-    )  # fmt: skip
+    return strains.T @ diags_array(moduli) @ strains, np.r_[np.tile(layout.mass, 2), inertia]
 
 
 def _joint_gaps(layout: Layout, finite: np.ndarray, columns: int) -> csr_array:

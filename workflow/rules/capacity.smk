@@ -3,7 +3,7 @@
 
 rule capacity:
     input:
-        code=code("capacity.py", "dataset.py"),
+        code=code("capacity.py", "dataset.py", "ridge.py"),
         response="<results>/runs/{run}/response.nc",
     output:
         "<results>/runs/{run}/capacity.nc",

@@ -26,7 +26,7 @@ rule claims:
     input:
         code=code("claims.py", "claims.yaml", "tables.py"),
         tables=[f"<results>/tables/{table}.csv" for table in all_tables()],
-        published=sorted(glob(f"{CONFIG.published_tables}/*.csv")),
+        published=authors_tables(),
     output:
         report("<results>/tables/claims.csv", caption="../report/claims.rst", category="Claims"),
     log:

@@ -47,10 +47,10 @@ def setups_at_hand(study):
 
     A setup takes part if this call of Snakemake asks for it (`published` as a target for the
     one, any other target for the other) or if all its runs are scored on disk already. So `make
-    figures` alone never simulates the published setup; and once `make published` has, both
-    want the same two inputs and find nothing to do. Names of runs hash their scenes: after a
-    change of the config the other setup's files are not those asked for, and it leaves the table
-    until it is asked for again.
+    figures` alone does not begin on the published setup; and once `make published` is through,
+    both want the same two inputs, keep both up to date, and find nothing to do. Names of runs hash
+    their scenes: after a change of the config the other setup's files are not those asked for, and
+    it leaves the table until it is asked for again.
     """
     targets = set(workflow.dag_settings.targets or ["figures"])
     asked = {"published"} & targets | ({"described"} if targets - {"published"} else set())
@@ -62,6 +62,11 @@ def tables_at_hand(wildcards):
     """Input function of `merge`: the same table of each setup at hand."""
     study = next(study for study, tables in TABLES.items() if wildcards.table in tables)
     return [f"{RESULTS}/tables/{s}/{wildcards.table}.csv" for s in setups_at_hand(study)]
+
+
+def authors_tables():
+    folder = CONFIG.published_tables
+    return sorted(glob(f"{folder}/*.csv")) if folder else []
 
 
 try:

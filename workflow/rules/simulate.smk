@@ -30,8 +30,8 @@ rule simulate:
             "scene.py",
             "simulation.py",
         ),
-        # ancient: compiling again is no reason to simulate again
-        compiled=ancient("<results>/warmup.done"),
+        # not ancient(): where warmup has to run, Snakemake 9.27 then overlooks every simulation
+        compiled="<results>/warmup.done",
     output:
         "<results>/runs/{run}/response.nc",
     log:

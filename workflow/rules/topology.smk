@@ -11,7 +11,15 @@ rule topology:
 
 rule topology_tables:
     input:
-        code=code("buckling.py", "capacity.py", "dataset.py", "network.py", "scene.py", "tables.py"),
+        code=code(
+            "buckling.py",
+            "capacity.py",
+            "dataset.py",
+            "network.py",
+            "ridge.py",
+            "scene.py",
+            "tables.py",
+        ),
         capacities=lambda wildcards: capacities("topology", wildcards.setup),
         example=lambda wildcards: response(example(runs(CONFIG, "topology", wildcards.setup))),
     output:
@@ -35,7 +43,14 @@ rule topology_tables:
 
 rule topology_figure:
     input:
-        code=code("dataset.py", "network.py", "plotting/*.py", "scene.py", "tables.py"),
+        code=code(
+            "buckling.py",
+            "dataset.py",
+            "network.py",
+            "plotting/*.py",
+            "scene.py",
+            "tables.py",
+        ),
         table=of_setup("topology.csv"),
         curves=of_setup("topology_curves.csv"),
         floors=of_setup("topology_floors.csv"),

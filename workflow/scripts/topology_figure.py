@@ -8,11 +8,12 @@ from fiberweb.tables import read
 
 to_log(snakemake.log[0])
 source = snakemake.input
+traces = load(source.traces)
 draw(
     read(source.table),
     read(source.curves),
     read(source.floors),
-    load(source.traces),
+    traces if traces.data_vars else None,
     snakemake.params.setup,
     snakemake.output.png,
 )

@@ -1,0 +1,208 @@
+"""Bad input is one sentence before anything runs; the generated files match the models."""
+
+import inspect
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fiberweb import capacity, schema
+from fiberweb.config import HORIZON, NumericsSection, check_folders, load
+from fiberweb.engines.choose import ACCURACIES, ENGINES
+from fiberweb.runs import SETUPS, STUDIES, example, run_table, runs
+
+ROOT = Path(__file__).parents[2]
+PAPER = ROOT / "config" / "config.yaml"
+SMOKE = ROOT / "config" / "smoke.yaml"
+
+BAD = {
+    "unknown key": ({"scene": {"diametre": 2e-3}}, ["diametre", "diameter"]),
+    "unknown section": ({"topolgy": {}}, ["topolgy", "topology"]),
+    "negative diameter": (
+        {"scene": {"diameter": -0.002}}, ["scene.diameter", "-0.002", "greater than 0", "m)"],
+    ),
+    "N = 1": ({"topology": {"crosshatch": [4, 1]}}, ["topology.crosshatch.1", "= 1", "to 2"]),
+    "odd polygon": ({"topology": {"polygon": [7]}}, ["topology.polygon.0", "= 7", "multiple of 2"]),
+    "no network": ({"topology": {"crosshatch": [], "polygon": []}}, ["topology", "at least one"]),
+    "tension a word": ({"scene": {"tension": "tight"}}, ["scene.tension", "'tight'", "number", "N)"]),
+    "number as text": (
+        {"scene": {"youngs_modulus": "1e8"}}, ["scene.youngs_modulus", "'1e8'", "1.0e+8"],
+    ),
+    "too short to score": (
+        {"scene": {"duration": 0.5}}, ["scene.duration", "0.5 s", "horizon of 1 s", "3.2 s"],
+    ),
+    "no such accuracy": (
+        {"numerics": {"accuracy": "ultra"}}, ["numerics.accuracy", "'ultra'", "'fine'"],
+    ),
+    "accuracy and step": (
+        {"numerics": {"time_step": 1e-5}}, ["numerics.accuracy", "time_step", "null"],
+    ),
+    "value for a section": ({"scene": 5}, ["scene", "5", "tension, duration"]),
+    "word for a list": ({"topology": {"polygon": 6}}, ["topology.polygon", "6", "list"]),
+    "no such ends": ({"setups": {"described": {"ends": "free"}}}, ["setups.described.ends", "'free'"]),
+    "not a number": ({"scene": {"density": float("nan")}}, ["scene.density", "nan", "finite"]),
+}  # fmt: skip
+
+
+def is_one_sentence(text):
+    return "\n" not in text and "Traceback" not in text and ". " not in text
+
+
+@pytest.mark.parametrize(("values", "words"), BAD.values(), ids=BAD)
+def test_bad_value_is_one_sentence(values, words):
+    with pytest.raises(ValueError) as caught:
+        load(PAPER, values)
+    text = str(caught.value)
+    assert is_one_sentence(text)
+    assert all(word in text for word in words), text
+
+
+def test_results_that_cannot_be_written(tmp_path):
+    (tmp_path / "file").touch()
+    results = str(tmp_path / "file" / "results")
+    with pytest.raises(ValueError) as caught:
+        check_folders(load({"results": results}))
+    text = str(caught.value)
+    assert is_one_sentence(text)
+    assert results in text and "cannot be written" in text
+
+
+def test_folders_that_can_be_used_are_left_alone(tmp_path):
+    (tmp_path / "table.csv").touch()
+    results = tmp_path / "new" / "results"
+    check_folders(load({"results": str(results), "published_tables": str(tmp_path)}))
+    assert not results.parent.exists()
+
+
+def test_authors_tables_that_are_not_there(tmp_path):
+    with pytest.raises(ValueError, match=r"published_tables = .* holds no CSV file"):
+        check_folders(load({"published_tables": str(tmp_path)}))
+
+
+def test_time_step_above_the_limit_names_the_limit():
+    config = load(PAPER, {"numerics": {"accuracy": None, "time_step": 1e-3}})
+    run = runs(config, "topology", "described")[0]
+    with pytest.raises(ValueError) as caught:
+        run.check()
+    text = str(caught.value)
+    assert is_one_sentence(text)
+    assert text.startswith(run.name) and "time_step = 0.001 s" in text and "limit of" in text
+
+
+@pytest.mark.parametrize(
+    ("overlay", "words"),
+    [
+        ("scene: {tension: tight}", "scene.tension = 'tight'"),
+        ("results: Snakefile/results", "results = 'Snakefile/results' cannot be written"),
+        ("numerics: {accuracy: null, time_step: 1.0e-3}", "time_step = 0.001 s"),
+    ],
+    ids=["value", "folder", "time step"],
+)
+def test_the_workflow_prints_the_sentence_and_nothing_else(tmp_path, overlay, words):
+    (tmp_path / "bad.yaml").write_text(overlay)
+    command = [sys.executable, "-m", "snakemake", "figures", "--cores", "1"]
+    done = subprocess.run(
+        [*command, "--configfile", str(tmp_path / "bad.yaml")],
+        cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+    )  # fmt: skip
+    printed = [line for line in done.stderr.splitlines() if not line.startswith("Using workflow")]
+    assert done.returncode != 0
+    assert len(printed) == 1 and words in printed[0], done.stderr
+
+
+def test_the_committed_config_is_the_models_defaults():
+    assert load(PAPER) == load()
+
+
+def test_schema_has_not_drifted():
+    assert (ROOT / "config" / "schema.json").read_text() == schema.schema()
+
+
+def test_table_of_keys_has_not_drifted():
+    assert (ROOT / "config" / "README.md").read_text().endswith(schema.table())
+
+
+def test_every_key_says_what_it_means():
+    assert all(all(cell for cell in row) for row in schema.rows(load()))
+
+
+def test_choices_are_those_of_the_engines():
+    fields = NumericsSection.model_json_schema()["properties"]
+    assert fields["accuracy"]["anyOf"][0]["enum"] == list(ACCURACIES)
+    assert fields["engine"]["anyOf"][0]["enum"] == list(ENGINES)
+
+
+def test_horizon_is_that_of_the_scoring():
+    assert inspect.signature(capacity.Options).parameters["horizon"].default == HORIZON
+
+
+def test_smoke_is_a_small_overlay():
+    paper, smoke = load(PAPER), load(PAPER, SMOKE)
+    assert smoke.results != paper.results
+    assert smoke.scene.duration < 10
+    assert set(smoke.topology.crosshatch) <= set(paper.topology.crosshatch)
+
+
+def test_names_of_runs_are_stable():
+    # frozen: a name that changes orphans every run that users have on disk
+    config = load()
+    names = [runs(config, "topology", setup)[1].name for setup in SETUPS]
+    assert names == [
+        "crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-428720",
+        "crosshatch-n04-s100.0mm-f50.0mN-t10.0mN-published-51b305",
+    ]
+    assert len(run_table(config)) == 20
+
+
+def test_a_name_depends_on_scene_and_numerics_only():
+    def name(values):
+        return runs(load(values), "topology", "described")[0].name
+
+    assert name({"scoring": {"alpha": 1.0}, "results": "elsewhere"}) == name({})
+    assert name({"scene": {"seed": 1}}) != name({})
+    assert name({"numerics": {"accuracy": "fine"}}) != name({})
+    assert name({"scene": {"tension": 1}}) == name({"scene": {"tension": 1.0}})
+
+
+def test_accuracy_is_of_the_described_setup_only():
+    config = load({"numerics": {"accuracy": "draft"}})
+    assert all(
+        run.numerics == {"accuracy": "draft"} for run in runs(config, "topology", "described")
+    )
+    assert all(run.numerics == {} for run in runs(config, "topology", "published"))
+
+
+def test_setups_differ_as_the_config_says():
+    config = load({"setups": {"described": {"damping": 20.0}}})
+    described, published = (runs(config, "topology", setup)[-1].scene for setup in SETUPS)
+    assert (described.damping, described.network.diagonals) == (20.0, "all")
+    assert (published.damping, published.network.diagonals) == (10.0, "skip-one")
+    assert runs(config, "topology", "published")[-1].scoring["skip"] == 300
+
+
+def test_studies_share_a_scene_they_both_ask_for(monkeypatch):
+    def again(config, setup):
+        yield from list(STUDIES["topology"](config, setup))[:2]
+
+    monkeypatch.setitem(STUDIES, "again", again)
+    config = load()
+    assert len(run_table(config)) == 20
+    assert runs(config, "again", "described") == runs(config, "topology", "described")[:2]
+
+
+def test_the_same_network_twice_is_one_run():
+    config = load({"topology": {"crosshatch": [4, 4], "polygon": []}})
+    assert len(runs(config, "topology", "described")) == 1
+
+
+def test_the_example_is_8x8_or_the_nearest_crosshatch():
+    def chosen(crosshatch, polygon):
+        config = load({"topology": {"crosshatch": crosshatch, "polygon": polygon}})
+        network = example(runs(config, "topology", "described")).scene.network
+        return network.topology, network.n
+
+    assert chosen([2, 8, 12], [6]) == ("crosshatch", 8)
+    assert chosen([2, 4], [8]) == ("crosshatch", 4)
+    assert chosen([], [6, 12]) == ("polygon", 6)
