@@ -57,7 +57,8 @@ class Scene:
         crossing_stiffness: k of the spring between fibres (N/m); infinity: one common point.
         crossing_damping: nu of the damper beside it (N s/m).
         damping: rate at which velocity decays (1/s).
-        filter_order: of the Laplace filter applied to velocities at every step; 0 for none.
+        filter_order: of the Laplace filter applied to velocities at every step, up to 6; 0 for
+            none.
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
         tension_ramp: time over which the tension grows from zero (s).
@@ -80,7 +81,7 @@ class Scene:
     crossing_stiffness: PositiveOrPinned | None = None
     crossing_damping: NotNegative | None = None
     damping: NotNegative | None = None
-    filter_order: Annotated[int, Field(ge=0, le=20, strict=True)] | None = None
+    filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
     ends: Literal["clamped", "sliding", "pinned"] | None = None
     tension_ramp: NotNegative = 0.25
 

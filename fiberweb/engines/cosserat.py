@@ -21,8 +21,7 @@ from fiberweb.engines.base import (
     record_in_chunks,
     steps_per_sample,
 )
-from fiberweb.engines.jit import kernel, summing
-from fiberweb.engines.kirchhoff import (
+from fiberweb.engines.books import (
     BOOKING,
     drive_value,
     in_bounds,
@@ -32,10 +31,18 @@ from fiberweb.engines.kirchhoff import (
     record,
     squared_speed,
 )
+from fiberweb.engines.jit import kernel, summing
+from fiberweb.engines.laplace import (
+    GAP,
+    REACH,
+    filter_stencil,
+    filter_views,
+    filtered_points,
+    laplace_filter,
+)
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.mesh import Mesh
 
-MARGIN = 32  # room for the filter's odd continuation beyond a fibre's ends
 SHEAR_FACTOR = 27.0 / 28.0  # alpha_c of a round section at Poisson's ratio 1/2, as PyElastica's
 
 
@@ -46,6 +53,12 @@ def refuse(mesh: Mesh) -> None:
             f"crossing_stiffness = {mesh.scene.crossing_stiffness}: the cosserat and elastica "
             "engines need a finite spring; use engine = 'kirchhoff'"
         )
+    shortest = np.diff(mesh.first).min() - 1
+    if mesh.scene.filter_order and shortest <= REACH + 1:
+        raise ValueError(
+            f"filter_order = {mesh.scene.filter_order}: the filter needs fibres of at least "
+            f"{REACH + 2} elements, and the shortest has {shortest}; raise elements_per_section"
+        )
 
 
 def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
@@ -55,7 +68,7 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
         ValueError: crossings without compliance.
     """
     refuse(mesh)
-    scene, layout = mesh.scene, lay_out(mesh)
+    scene, layout = mesh.scene, lay_out(mesh, GAP if mesh.scene.filter_order else 1)
     per_sample = steps_per_sample(scene, numerics.time_step)
     step = 1.0 / (scene.sample_rate * per_sample)
     nodes, weights = readout_arrays(mesh)
@@ -66,19 +79,22 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
         layout.x.copy(), layout.y.copy(), np.zeros(size), np.zeros(size),
         angle, np.zeros(size - 1), np.cos(angle), np.sin(angle),
     )  # fmt: skip
-    work = (*(np.zeros(size) for _ in range(9)), np.zeros((3, size + 2 * MARGIN)))
+    work = tuple(np.zeros(size) for _ in range(8))
     node_arrays, element_arrays, books = coefficients(mesh, layout, step)
     ties = (layout.joints, mesh.joint_stiffness, mesh.joint_damping)
     readouts = (layout.at[nodes], weights, layout.x, layout.y)
     limit = RUNAWAY * scene.wave_speed
     decay = np.exp(-scene.damping * step)
     scalars = (scene.drive_rate, scene.tension_ramp, step, limit, decay)
-    fibres = (layout.at[mesh.first[:-1]], layout.at[mesh.first[1:] - 1])
-    stencil = filter_stencil(scene.filter_order)
+    quarter_node, quarter_element = (0.25 * inside for inside in filtered_points(layout))
+    filtering = (
+        scene.filter_order, 4.0 * filter_stencil(scene.filter_order), quarter_node,
+        quarter_element, layout.at[mesh.first[:-1]], layout.at[mesh.first[1:] - 1],
+    )  # fmt: skip
 
     def advance_to(first, displacement, energy):
         return advance(
-            state, work, node_arrays, element_arrays, ties, fibres, stencil, mesh.drive,
+            state, work, node_arrays, element_arrays, ties, filtering, mesh.drive,
             readouts, books, scalars, per_sample, first, displacement, energy,
         )  # fmt: skip
 
@@ -88,8 +104,8 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
 def coefficients(mesh: Mesh, layout: Layout, step: float):
     """What the kernel multiplies with, over nodes and over elements, and what its books need."""
     scene = mesh.scene
-    axial = scene.axial_stiffness * layout.solid
-    inertia = scene.density * np.pi * scene.diameter**4 / 64 * layout.edge
+    inertia_per_length = scene.density * np.pi * scene.diameter**4 / 64
+    inertia = inertia_per_length * layout.edge
     uniform, stretched = rotation_damping(mesh, layout, inertia)
     loaded = np.flatnonzero(layout.load_x**2 + layout.load_y**2)
     node_arrays = (
@@ -98,20 +114,12 @@ def coefficients(mesh: Mesh, layout: Layout, step: float):
         0.5 / layout.voronoi, loaded, layout.load_x[loaded], layout.load_y[loaded],
     )  # fmt: skip
     element_arrays = (
-        axial, axial / 3.0 * SHEAR_FACTOR, layout.edge, 1.0 / layout.edge,
-        layout.solid / inertia, np.exp(-uniform * step), stretched * step,
+        layout.edge, layout.solid / layout.edge, np.exp(-uniform * step), stretched * step,
+        scene.axial_stiffness, scene.axial_stiffness / 3.0 * SHEAR_FACTOR,
+        1.0 / inertia_per_length,
     )  # fmt: skip
     books = (np.zeros(2), layout.mass, layout.solid * inertia, scene.damping, uniform)
     return node_arrays, element_arrays, books
-
-
-def filter_stencil(order: int) -> np.ndarray:
-    """Weights of order - 1 applications of minus a quarter of the second difference, from the
-    centre outwards, shape (order,); empty without a filter."""
-    weights = np.ones(1)
-    for _ in range(order - 1):
-        weights = np.convolve(weights, [-0.25, 0.5, -0.25])
-    return weights[len(weights) // 2 :] if order else np.zeros(0)
 
 
 def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
@@ -135,28 +143,30 @@ def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
 
 @kernel
 def stress_pass(
-    x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, axial, shear, edge, over_edge, over_inertia,
-    fx, fy, length, dilatation, alpha,
+    x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, edge, over_edge, axial, shear, over_inertia,
+    fx, fy, length, alpha,
 ):  # fmt: skip
-    """Forces in the elements, and the angular acceleration from shear and stretching."""
+    """Forces in the elements, and the angular acceleration from shear and stretching.
+
+    `over_edge` is 1 / edge on elements and 0 in gaps, which carries all that gaps lack.
+    """
     for i in range(fx.shape[0]):
         dx = x1[i] - x0[i]
         dy = y1[i] - y0[i]
         q = dx * dx + dy * dy
         r = 1.0 / np.sqrt(q)
+        o = over_edge[i]
         over_e = edge[i] * r
-        e = q * r * over_edge[i]
-        n3 = axial[i] * ((dx * c[i] + dy * s[i]) * over_edge[i] - 1.0)
-        ns = shear[i] * ((dy * c[i] - dx * s[i]) * over_edge[i])
-        nx = n3 * c[i] - ns * s[i]
-        ny = n3 * s[i] + ns * c[i]
-        fx[i] = nx * over_e
-        fy[i] = ny * over_e
+        n3 = axial * ((dx * c[i] + dy * s[i]) * o - edge[i] * o)
+        ns = shear * ((dy * c[i] - dx * s[i]) * o)
+        nx = (n3 * c[i] - ns * s[i]) * over_e
+        ny = (n3 * s[i] + ns * c[i]) * over_e
+        fx[i] = nx
+        fy[i] = ny
         length[i] = q * r
-        dilatation[i] = e
-        couple = (dx * ny - dy * nx) * over_e
-        rate = (dx * (vx1[i] - vx0[i]) + dy * (vy1[i] - vy0[i])) * r * r
-        alpha[i] = couple * e * over_inertia[i] + omega[i] * rate
+        couple = (dx * ny - dy * nx) * (q * r * o)
+        rate = (dx * (vx1[i] - vx0[i]) + dy * (vy1[i] - vy0[i])) * (r * r)
+        alpha[i] = couple * (over_inertia * o) + omega[i] * rate
 
 
 @kernel
@@ -182,13 +192,16 @@ def drift_pass(x, v, step):
 
 
 @kernel
-def spin_pass(omega, alpha, couple0, couple1, dilatation, over_inertia, decay, stretched, step):
+def spin_pass(
+    omega, alpha, couple0, couple1, length, over_edge, decay, stretched, over_inertia, step
+):
     """Kick and damp the angular velocities; the damper's power of dilatation as a series."""
     for i in range(omega.shape[0]):
-        e = dilatation[i]
-        new = omega[i] + step * (alpha[i] + (couple1[i] - couple0[i]) * e * over_inertia[i])
+        e = length[i] * over_edge[i]
+        bending = (couple1[i] - couple0[i]) * (e * over_edge[i] * over_inertia)
         a = stretched[i] * (e - 1.0)
-        omega[i] = new * decay[i] * (1.0 - a * (1.0 - a * (0.5 - a * (1.0 / 6.0))))
+        less = decay[i] * (1.0 - a * (1.0 - a * (0.5 - a * (1.0 / 6.0))))
+        omega[i] = (omega[i] + step * (alpha[i] + bending)) * less
 
 
 @kernel
@@ -203,59 +216,6 @@ def rotate_pass(angle, omega, c, s, step):
         new = c[i] * cosine - s[i] * sine
         s[i] = s[i] * cosine + c[i] * sine
         c[i] = new
-
-
-@kernel
-def difference_pass(left, middle, right, out):
-    """Minus a quarter of the second difference."""
-    for i in range(out.shape[0]):
-        out[i] = 0.25 * (2.0 * middle[i] - left[i] - right[i])
-
-
-@kernel
-def stencil_pass(rate, f, l1, r1, l2, r2, l3, r3, l4, r4, l5, r5, w):
-    """Take the 11-point sum of f from the rate."""
-    for i in range(rate.shape[0]):
-        near = w[0] * f[i] + w[1] * (l1[i] + r1[i]) + w[2] * (l2[i] + r2[i])
-        rate[i] -= near + w[3] * (l3[i] + r3[i]) + w[4] * (l4[i] + r4[i]) + w[5] * (l5[i] + r5[i])
-
-
-@kernel
-def laplace_filter(rate, first, last, weights, scratch):
-    """Jeanmart-Winckelmans filter of one fibre: what is left of `rate` between `first` and
-    `last`, its two ends, after `order` second differences is taken away.
-
-    PyElastica sets each difference to zero at the ends. So the first difference, continued
-    beyond them as an odd function, has its own further differences everywhere, and those are
-    one stencil.
-    """
-    order = weights.shape[0]
-    m = MARGIN
-    count = last - first + 1
-    f = scratch[: count + 2 * m]
-    difference_pass(
-        rate[first : last - 1], rate[first + 1 : last], rate[first + 2 : last + 1],
-        f[m + 1 : m + count - 1],
-    )  # fmt: skip
-    f[m] = 0.0
-    f[m + count - 1] = 0.0
-    for k in range(1, order):
-        f[m - k] = -f[m + min(k, count - 1)]
-        f[m + count - 1 + k] = -f[m + count - 1 - min(k, count - 1)]
-    target = rate[first + 1 : last]
-    a, b = m + 1, m + count - 1
-    if order == 6:
-        stencil_pass(
-            target, f[a:b], f[a - 1 : b - 1], f[a + 1 : b + 1], f[a - 2 : b - 2],
-            f[a + 2 : b + 2], f[a - 3 : b - 3], f[a + 3 : b + 3], f[a - 4 : b - 4],
-            f[a + 4 : b + 4], f[a - 5 : b - 5], f[a + 5 : b + 5], weights,
-        )  # fmt: skip
-        return
-    for i in range(target.shape[0]):
-        total = weights[0] * f[a + i]
-        for k in range(1, order):
-            total += weights[k] * (f[a + i - k] + f[a + i + k])
-        target[i] -= total
 
 
 @kernel
@@ -281,7 +241,7 @@ def strain_energy(x, y, angle, node_arrays, element_arrays):
     """Elastic energy of the fibres (J): the potential of stretch, and of shear and bending to
     leading order in the stretch, whose factors in PyElastica's equations have none."""
     bend, half_over_voronoi = node_arrays[4], node_arrays[5]
-    axial, shear, edge, over_edge = element_arrays[:4]
+    edge, over_edge, _, _, axial, shear, _ = element_arrays
     total, before = 0.0, 0.0
     for i in range(angle.shape[0]):
         dx, dy = x[i + 1] - x[i], y[i + 1] - y[i]
@@ -289,9 +249,9 @@ def strain_energy(x, y, angle, node_arrays, element_arrays):
         c, s = np.cos(angle[i]), np.sin(angle[i])
         along = (dx * c + dy * s) * over_edge[i]
         across = (dy * c - dx * s) * over_edge[i]
-        if axial[i] > 0.0:
-            total += axial[i] * edge[i] * (along - 1.0 - np.log(along))
-            total += 0.5 * shear[i] * edge[i] * across * across
+        if over_edge[i] > 0.0:
+            total += axial * edge[i] * (along - 1.0 - np.log(along))
+            total += 0.5 * shear * edge[i] * across * across
         if i > 0 and bend[i] > 0.0:
             e = (before + length) * half_over_voronoi[i]
             total += 0.5 * bend[i] * (angle[i] - angle[i - 1]) ** 2 / (e * e * e)
@@ -310,8 +270,8 @@ def squared_spin(omega, weight):
 
 @kernel
 def advance(
-    state, work, node_arrays, element_arrays, ties, fibres, stencil, drive, readouts, books,
-    scalars, per_sample, first, out, energy,
+    state, work, node_arrays, element_arrays, ties, filtering, drive, readouts, books, scalars,
+    per_sample, first, out, energy,
 ):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
@@ -321,26 +281,45 @@ def advance(
         work: scratch, nine arrays of (n,) and the filter's.
         node_arrays, element_arrays, books: see `coefficients`.
         ties: joints, their stiffness and damping.
-        fibres: first and last node of each.
-        stencil: see `filter_stencil`.
+        filtering: order and weights of the filter, where it acts on nodes and on elements, and
+            the first and last node of each fibre.
         drive, readouts, scalars, per_sample, first, out, energy: as in the kirchhoff engine.
 
     Returns:
         How many samples were recorded before the run became unstable.
     """
     x, y, vx, vy, angle, omega, c, s = state
-    fx, fy, length = work[0][1:], work[1][1:], work[2][1:]
-    dilatation, alpha, couple = work[3][1:], work[4][1:], work[5]
-    outer_x, outer_y, scratch = work[6], work[7], work[9]
+    fx, fy, length, alpha = work[0][1:], work[1][1:], work[2][1:], work[3][1:]
+    couple, outer_x, outer_y, scratch = work[4], work[5], work[6], work[7]
     kick_x, kick_y, pull_x, pull_y, bend, half_over_voronoi, loaded, load_x, load_y = node_arrays
-    axial, shear, edge, over_edge, over_inertia, spin_decay, stretched = element_arrays
+    edge, over_edge, spin_decay, stretched, axial, shear, over_inertia = element_arrays
     joints, stiffness, damping = ties
-    firsts, lasts = fibres
+    order, stencil, quarter_node, quarter_element, firsts, lasts = filtering
+    last_elements = lasts - 1
     at, weights, rest_x, rest_y = readouts
     done, mass, inertia, rate, spin_rate = books
     drive_rate, ramp_time, step, limit, decay = scalars
-    filtered = stencil.shape[0] > 0
+    filtered = order > 0
     every = max(1, int(BOOKING / step))
+    # views are made once: at a few hundred elements they would cost a fifth of the step
+    x0, x1, y0, y1, vx0, vx1, vy0, vy1 = (
+        x[:-1],
+        x[1:],
+        y[:-1],
+        y[1:],
+        vx[:-1],
+        vx[1:],
+        vy[:-1],
+        vy[1:],
+    )
+    angle0, angle1, length0, length1 = angle[:-1], angle[1:], length[:-1], length[1:]
+    inner_bend, inner_half, inner_couple = bend[1:-1], half_over_voronoi[1:-1], couple[1:-1]
+    couple0, couple1, fx0, fx1, fy0, fy1 = couple[:-1], couple[1:], fx[:-1], fx[1:], fy[:-1], fy[1:]
+    vxi, vyi, oxi, oyi = vx[1:-1], vy[1:-1], outer_x[1:-1], outer_y[1:-1]
+    kxi, kyi, short = kick_x[1:-1], kick_y[1:-1], scratch[:-1]
+    views_x = filter_views(vx, quarter_node, scratch)
+    views_y = filter_views(vy, quarter_node, scratch)
+    views_omega = filter_views(omega, quarter_element, short)
     for sample in range(out.shape[0]):
         record(x, y, vx, vy, at, weights, rest_x, rest_y, 0.5 * step, out[sample])
         here_x, here_y = x - 0.5 * step * vx, y - 0.5 * step * vy
@@ -368,13 +347,10 @@ def advance(
                     outer_x[i] = ramp * pull_x[i]
                     outer_y[i] = ramp * pull_y[i]
             stress_pass(
-                x[:-1], x[1:], y[:-1], y[1:], vx[:-1], vx[1:], vy[:-1], vy[1:], omega, c, s,
-                axial, shear, edge, over_edge, over_inertia, fx, fy, length, dilatation, alpha,
+                x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, edge, over_edge, axial, shear,
+                over_inertia, fx, fy, length, alpha,
             )  # fmt: skip
-            couple_pass(
-                angle[:-1], angle[1:], length[:-1], length[1:], bend[1:-1],
-                half_over_voronoi[1:-1], couple[1:-1],
-            )  # fmt: skip
+            couple_pass(angle0, angle1, length0, length1, inner_bend, inner_half, inner_couple)
             u = drive_value(drive, drive_rate, time)
             for i in range(loaded.shape[0]):
                 m = loaded[i]
@@ -388,11 +364,11 @@ def advance(
                 outer_x[m] += u * load_x[i]
                 outer_y[m] += u * load_y[i]
                 done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])
-            velocity_pass(vx[1:-1], fx[:-1], fx[1:], outer_x[1:-1], kick_x[1:-1], decay)
-            velocity_pass(vy[1:-1], fy[:-1], fy[1:], outer_y[1:-1], kick_y[1:-1], decay)
+            velocity_pass(vxi, fx0, fx1, oxi, kxi, decay)
+            velocity_pass(vyi, fy0, fy1, oyi, kyi, decay)
             spin_pass(
-                omega, alpha, couple[:-1], couple[1:], dilatation, over_inertia, spin_decay,
-                stretched, step,
+                omega, alpha, couple0, couple1, length, over_edge, spin_decay, stretched,
+                over_inertia, step,
             )  # fmt: skip
             for i in range(loaded.shape[0]):
                 m = loaded[i]
@@ -408,10 +384,9 @@ def advance(
                     lost += 0.5 * squared_speed(vx, vy, mass) / step
                     lost += 0.5 * squared_spin(omega, inertia) / step
             if filtered:
-                for f in range(firsts.shape[0]):
-                    laplace_filter(vx, firsts[f], lasts[f], stencil, scratch[0])
-                    laplace_filter(vy, firsts[f], lasts[f], stencil, scratch[1])
-                    laplace_filter(omega, firsts[f], lasts[f] - 1, stencil, scratch[2])
+                laplace_filter(views_x, firsts, lasts, stencil, scratch)
+                laplace_filter(views_y, firsts, lasts, stencil, scratch)
+                laplace_filter(views_omega, firsts, last_elements, stencil, short)
             if booked:
                 if filtered:
                     lost -= 0.5 * squared_speed(vx, vy, mass) / step

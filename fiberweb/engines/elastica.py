@@ -18,8 +18,8 @@ from fiberweb.engines.base import (
     readout_arrays,
     steps_per_sample,
 )
+from fiberweb.engines.books import drive_value
 from fiberweb.engines.cosserat import refuse
-from fiberweb.engines.kirchhoff import drive_value
 from fiberweb.mesh import Mesh
 
 MM, MICRONEWTON = 1e3, 1e6  # a metre in mm; a newton in g mm / s^2

@@ -1,8 +1,8 @@
 """The mesh as the planar kernels see it: one long chain of nodes, with gaps.
 
-A ghost node stands before each fibre and after the last, so that one loop runs over
+Ghost nodes stand before each fibre and after the last, so that one loop runs over
 everything: the edges next to a ghost have no stiffness and ghosts do not move. The ghost
-before a fibre lies one element behind its near end, so that a clamp is an ordinary bending
+next to a fibre lies one element behind its near end, so that a clamp is an ordinary bending
 node: the moment there grows with the angle between ghost edge and first edge over half an
 element, which is the half cell that a curvature at the wall spans. Second order, where
 holding the first element's direction is first order (it shortens the fibre by half an
@@ -55,11 +55,12 @@ class Layout:
     joints: np.ndarray
 
 
-def lay_out(mesh: Mesh) -> Layout:
-    """Pad a mesh with ghosts."""
+def lay_out(mesh: Mesh, gap: int = 1) -> Layout:
+    """Pad a mesh with `gap` ghosts between fibres."""
     fibres = len(mesh.first) - 1
-    size = len(mesh.position) + fibres + 1
-    at = np.arange(len(mesh.position)) + 1 + np.repeat(np.arange(fibres), np.diff(mesh.first))
+    size = len(mesh.position) + gap * (fibres + 1)
+    number = np.repeat(np.arange(fibres), np.diff(mesh.first))
+    at = np.arange(len(mesh.position)) + gap * (number + 1)
     position = np.zeros((size, 2))
     position[at] = mesh.position
     edge, solid = np.ones(size - 1), np.zeros(size - 1)
@@ -75,8 +76,12 @@ def lay_out(mesh: Mesh) -> Layout:
         span[near + 1 : far] = voronoi[near + 1 : far]
         if mesh.clamped[fibre]:
             bends[near], span[near] = 1.0, 0.5 * lengths[0]
-        position[near - 1] = 2 * position[near] - position[near + 1]
-    position[-1] = 2 * position[-2] - position[-3]
+        back = np.arange(1, gap + 1)[:, None] * (position[near] - position[near + 1])
+        position[near - back.shape[0] : near] = (position[near] + back)[::-1]
+    end = at[-1]
+    position[end + 1 :] = position[end] + np.arange(1, gap + 1)[:, None] * (
+        position[end] - position[end - 1]
+    )
     mass = _pad(at, size, mesh.masses(), fill=1.0)
     free = ~mesh.held
     return Layout(

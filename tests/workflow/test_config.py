@@ -26,7 +26,9 @@ BAD = {
     "N = 1": ({"topology": {"crosshatch": [4, 1]}}, ["topology.crosshatch.1", "= 1", "to 2"]),
     "odd polygon": ({"topology": {"polygon": [7]}}, ["topology.polygon.0", "= 7", "multiple of 2"]),
     "no network": ({"topology": {"crosshatch": [], "polygon": []}}, ["topology", "at least one"]),
-    "tension a word": ({"scene": {"tension": "tight"}}, ["scene.tension", "'tight'", "number", "N)"]),
+    "tension a word": (
+        {"scene": {"tension": "tight"}}, ["scene.tension", "'tight'", "number", "N)"],
+    ),
     "number as text": (
         {"scene": {"youngs_modulus": "1e8"}}, ["scene.youngs_modulus", "'1e8'", "1.0e+8"],
     ),
@@ -41,7 +43,9 @@ BAD = {
     ),
     "value for a section": ({"scene": 5}, ["scene", "5", "tension, duration"]),
     "word for a list": ({"topology": {"polygon": 6}}, ["topology.polygon", "6", "list"]),
-    "no such ends": ({"setups": {"described": {"ends": "free"}}}, ["setups.described.ends", "'free'"]),
+    "no such ends": (
+        {"setups": {"described": {"ends": "free"}}}, ["setups.described.ends", "'free'"],
+    ),
     "not a number": ({"scene": {"density": float("nan")}}, ["scene.density", "nan", "finite"]),
 }  # fmt: skip
 
@@ -107,7 +111,8 @@ def test_the_workflow_prints_the_sentence_and_nothing_else(tmp_path, overlay, wo
         [*command, "--configfile", str(tmp_path / "bad.yaml")],
         cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
     )  # fmt: skip
-    printed = [line for line in done.stderr.splitlines() if not line.startswith("Using workflow")]
+    snakemakes_own = ("Using workflow specific profile", "Config file config/config.yaml is ext")
+    printed = [row for row in done.stderr.splitlines() if not row.startswith(snakemakes_own)]
     assert done.returncode != 0
     assert len(printed) == 1 and words in printed[0], done.stderr
 
@@ -147,13 +152,17 @@ def test_smoke_is_a_small_overlay():
 
 def test_names_of_runs_are_stable():
     # frozen: a name that changes orphans every run that users have on disk
-    config = load()
-    names = [runs(config, "topology", setup)[1].name for setup in SETUPS]
-    assert names == [
+    crossings = {"crossing_stiffness": 50.0, "crossing_damping": 1.0}
+    config = load({"setups": {"described": crossings | {"damping": 10.0}}})
+    assert [runs(config, "topology", setup)[1].name for setup in SETUPS] == [
         "crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-428720",
         "crosshatch-n04-s100.0mm-f50.0mN-t10.0mN-published-51b305",
     ]
-    assert len(run_table(config)) == 20
+
+
+def test_the_paper_has_ten_networks_in_each_setup():
+    names = list(run_table(load()))
+    assert (len(names), sum("published" in name for name in names)) == (20, 10)
 
 
 def test_a_name_depends_on_scene_and_numerics_only():

@@ -3,7 +3,14 @@
 
 rule warmup:
     input:
-        code=code("engines/*.py"),
+        code=code(
+            "buckling.py",
+            "drive.py",
+            "engines/*.py",
+            "mesh.py",
+            "network.py",
+            "scene.py",
+        ),
     output:
         touch("<results>/warmup.done"),
     log:

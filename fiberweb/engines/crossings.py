@@ -1,0 +1,136 @@
+"""Crossings of the kirchhoff engine: spring and damper, stepped exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from fiberweb.engines.jit import kernel
+from fiberweb.engines.layout import Layout
+from fiberweb.mesh import Mesh
+
+
+def joint_operators(mesh: Mesh, layout: Layout, step: float):
+    """What a step does to the nodes that meet at a crossing, beyond what it does to all.
+
+    With v the velocities before the kick, v* after the kick of all but the crossing, and x the
+    positions, the step gives v' = P v + Q v* + S x, where for the damper matrix N, spring
+    matrix K (graph Laplacians) and lumped masses M
+
+        E = exp(-h M^-1 N),   Phi = (h M^-1 N)^-1 (1 - E),
+        P = E - Phi,   Q = Phi,   S = -h Phi M^-1 K,
+
+    (times the decay of free velocities): exact for forces constant over the step. Nodes that
+    are one point get the mass-weighted mean of v*.
+
+    Returns:
+        For crossings of two nodes, on the relative motion: nodes a and b, p, q, s and the
+        shares of a and b in a change of relative velocity, each (pairs,). For the others: start
+        of each group in members, members (padded node indices), start of each group in the
+        operators, operators (P, Q, S of each group, each row by row).
+    """
+    pairs, others = [], []
+    for nodes, spring, damper in _groups(mesh, layout):
+        mass = layout.mass[nodes]
+        if len(nodes) == 2:
+            operators = _pair_operators(
+                mass, -spring[0, 1], -damper[0, 1], step, mesh.scene.damping
+            )
+            pairs.append((*nodes, *operators, *(1.0 - mass / mass.sum())))
+        else:
+            operators = _group_operators(mass, spring, damper, step, mesh.scene.damping)
+            others.append((nodes, operators))
+    a, b, *rest = (np.array(column) for column in zip(*pairs)) if pairs else [np.zeros(0)] * 7
+    integer = np.int64
+    return (
+        a.astype(integer), b.astype(integer), *rest,
+        np.cumsum([0] + [len(nodes) for nodes, _ in others]),
+        np.array([n for nodes, _ in others for n in nodes], dtype=integer),
+        np.cumsum([0] + [operators.size for _, operators in others]),
+        np.concatenate([operators.ravel() for _, operators in others] or [np.zeros(0)]),
+    )  # fmt: skip
+
+
+def _groups(mesh: Mesh, layout: Layout):
+    """Nodes that meet at each crossing, with their spring and damper matrices."""
+    size = len(layout.mass)
+    a, b = layout.joints.T
+    _, label = connected_components(
+        coo_array((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False
+    )
+    members: dict[int, list[int]] = {}
+    for node in np.unique(layout.joints):
+        members.setdefault(label[node], []).append(int(node))
+    matrices = {key: np.zeros((2, len(nodes), len(nodes))) for key, nodes in members.items()}
+    for (i, j), k, nu in zip(layout.joints, mesh.joint_stiffness, mesh.joint_damping):
+        nodes, (spring, damper) = members[label[i]], matrices[label[i]]
+        gap = np.zeros(len(nodes))
+        gap[nodes.index(i)], gap[nodes.index(j)] = 1.0, -1.0
+        at = np.ix_(np.flatnonzero(gap), np.flatnonzero(gap))
+        spring[at] += k * np.outer(gap, gap)[at]
+        damper += nu * np.outer(gap, gap)
+    for key, nodes in members.items():
+        yield nodes, *matrices[key]
+
+
+def _pair_operators(mass, k, nu, step, rate) -> tuple[float, float, float]:
+    """P, Q and S of two nodes, as factors of their relative motion."""
+    if np.isinf(k):
+        return 0.0, 0.0, 0.0
+    over_mass = (1.0 / mass).sum()
+    z = step * nu * over_mass
+    phi = -np.expm1(-z) / z if z > 0.0 else 1.0
+    kick = -step * np.exp(-0.5 * rate * step) * phi * k * over_mass
+    return np.exp(-rate * step) * (np.exp(-z) - phi), phi, kick
+
+
+def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
+    """P, Q and S of one group, shape (3, nodes, nodes)."""
+    count = len(mass)
+    if not np.isfinite(spring).all():
+        mean = np.tile(mass / mass.sum(), (count, 1))
+        return np.array([np.zeros((count, count)), mean, np.zeros((count, count))])
+    damping = step * damper / mass[:, None]
+    # the phi function from one exponential of an augmented matrix: no division by zero rates
+    augmented = np.block([[-damping, np.eye(count)], [np.zeros((count, 2 * count))]])
+    exponential = expm(augmented)
+    decayed, phi = exponential[:count, :count], exponential[:count, count:]
+    kick = -step * np.exp(-0.5 * rate * step) * phi @ (spring / mass[:, None])
+    return np.array([np.exp(-rate * step) * (decayed - phi), phi, kick])
+
+
+@kernel
+def pair_pass(x, v, f, outer, kick, a_nodes, b_nodes, p, q, s, share_a, share_b, decay):
+    """Change the velocities of crossings of two nodes such that the kick that follows leaves
+    them as spring and damper would (one direction); `joint_operators` has the step."""
+    for j in range(a_nodes.shape[0]):
+        a, b = a_nodes[j], b_nodes[j]
+        old = v[b] - v[a]
+        kicked = decay * old + (
+            kick[b] * (f[b] - f[b - 1] + outer[b]) - kick[a] * (f[a] - f[a - 1] + outer[a])
+        )
+        change = (p[j] * old + q[j] * kicked + s[j] * (x[b] - x[a]) - kicked) / decay
+        v[a] -= share_a[j] * change
+        v[b] += share_b[j] * change
+
+
+@kernel
+def group_pass(x, v, f, outer, kick, starts, members, offsets, operators, decay, old, kicked):
+    """The same for crossings of any number of nodes, by dense operators."""
+    for g in range(starts.shape[0] - 1):
+        first, count = starts[g], starts[g + 1] - starts[g]
+        p = offsets[g]
+        q, s = p + count * count, p + 2 * count * count
+        for i in range(count):
+            n = members[first + i]
+            old[i] = v[n]
+            kicked[i] = decay * v[n] + kick[n] * (f[n] - f[n - 1] + outer[n])
+        for i in range(count):
+            new = -kicked[i]
+            for j in range(count):
+                k = i * count + j
+                new += operators[p + k] * old[j] + operators[q + k] * kicked[j]
+                new += operators[s + k] * x[members[first + j]]
+            v[members[first + i]] += new / decay

@@ -1,0 +1,83 @@
+"""PyElastica's Laplace filter, as one stencil.
+
+Reference: Jeanmart and Winckelmans, Phys. Fluids 19, 055110 (2007).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fiberweb.engines.jit import kernel
+from fiberweb.engines.layout import Layout
+
+REACH = 5  # of the stencil on either side
+GAP = 2 * REACH  # ghosts between fibres: room for the continuation beyond the ends of both
+
+
+def filtered_points(layout: Layout):
+    """1 at inner nodes and at inner elements of fibres, 0 elsewhere, (n,) and (n - 1,)."""
+    fibre = layout.solid > 0
+    node, element = np.zeros(len(layout.x)), np.zeros(len(fibre))
+    node[1:-1] = fibre[1:] & fibre[:-1]
+    element[1:-1] = fibre[1:-1] & fibre[2:] & fibre[:-2]
+    return node, element
+
+
+def filter_stencil(order: int) -> np.ndarray:
+    """Weights of order - 1 applications of minus a quarter of the second difference, from the
+    centre outwards, shape (6,)."""
+    weights = np.ones(1)
+    for _ in range(order - 1):
+        weights = np.convolve(weights, [-0.25, 0.5, -0.25])
+    return np.r_[weights[order - 1 :], np.zeros(6 - order)]
+
+
+@kernel
+def difference_pass(left, middle, right, inside, out):
+    """Minus a quarter of the second difference; zero outside and at the ends of fibres."""
+    for i in range(out.shape[0]):
+        out[i] = inside[i] * (2.0 * middle[i] - left[i] - right[i])
+
+
+@kernel
+def stencil_pass(rate, inside, f, l1, r1, l2, r2, l3, r3, l4, r4, l5, r5, w0, w1, w2, w3, w4, w5):
+    """Take the 11-point sum of f from the rate."""
+    for i in range(rate.shape[0]):
+        near = w0 * f[i] + w1 * (l1[i] + r1[i]) + w2 * (l2[i] + r2[i])
+        far = w3 * (l3[i] + r3[i]) + w4 * (l4[i] + r4[i]) + w5 * (l5[i] + r5[i])
+        rate[i] -= inside[i] * (near + far)
+
+
+@kernel
+def filter_views(rate, inside, f):
+    """The shifted parts of its arrays that the filter's passes run over."""
+    n, g = rate.shape[0], REACH
+    m = n - g
+    return (
+        (rate[:-2], rate[1:-1], rate[2:], inside[1:-1], f[1:-1]),
+        (
+            rate[g:m], inside[g:m], f[g:m], f[g - 1 : m - 1], f[g + 1 : m + 1],
+            f[g - 2 : m - 2], f[g + 2 : m + 2], f[g - 3 : m - 3], f[g + 3 : m + 3],
+            f[g - 4 : m - 4], f[g + 4 : m + 4], f[g - 5 : m - 5], f[g + 5 : m + 5],
+        ),
+    )  # fmt: skip
+
+
+@kernel
+def laplace_filter(views, firsts, lasts, w, f):
+    """Jeanmart-Winckelmans filter: what is left of `rate` after six second differences is
+    taken away.
+
+    PyElastica sets each difference to zero at a fibre's ends. So the first difference,
+    continued beyond them as an odd function, has its further differences everywhere, and those
+    are one stencil; the gaps between fibres hold the continuation. `inside` is 1/4 on the inner
+    points of fibres and 0 elsewhere, and the weights w are four times those of
+    `filter_stencil`.
+    """
+    difference_pass(*views[0])
+    for k in range(lasts.shape[0]):
+        a, b = firsts[k], lasts[k]
+        for j in range(1, REACH + 1):
+            f[a - j] = -f[a + j]
+            f[b + j] = -f[b - j]
+    stencil_pass(*views[1], w[0], w[1], w[2], w[3], w[4], w[5])
