@@ -45,7 +45,7 @@ def joint_operators(mesh: Mesh, layout: Layout, step: float):
     a, b, *rest = (np.array(column) for column in zip(*pairs)) if pairs else [np.zeros(0)] * 7
     integer = np.int64
     return (
-        a.astype(integer), b.astype(integer), *rest,
+        a.astype(np.uint64), b.astype(np.uint64), *rest,
         np.cumsum([0] + [len(nodes) for nodes, _ in others]),
         np.array([n for nodes, _ in others for n in nodes], dtype=integer),
         np.cumsum([0] + [operators.size for _, operators in others]),
@@ -102,16 +102,22 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
 
 
 @kernel
-def pair_pass(x, v, f, outer, kick, a_nodes, b_nodes, p, q, s, share_a, share_b, decay):
+def pair_pass(pairs, x, v, f_before, f, outer, kick, decay):
     """Change the velocities of crossings of two nodes such that the kick that follows leaves
-    them as spring and damper would (one direction); `joint_operators` has the step."""
+    them as spring and damper would (one direction); `joint_operators` has the step.
+
+    `f_before` at a node is the force in the edge before it, `f` in the one after. The indices
+    are unsigned, since Numba looks for negative ones at every access otherwise.
+    """
+    a_nodes, b_nodes, p, q, s, share_a, share_b = pairs
+    over = 1.0 / decay
     for j in range(a_nodes.shape[0]):
         a, b = a_nodes[j], b_nodes[j]
         old = v[b] - v[a]
-        kicked = decay * old + (
-            kick[b] * (f[b] - f[b - 1] + outer[b]) - kick[a] * (f[a] - f[a - 1] + outer[a])
-        )
-        change = (p[j] * old + q[j] * kicked + s[j] * (x[b] - x[a]) - kicked) / decay
+        push_b = kick[b] * (f[b] - f_before[b] + outer[b])
+        push_a = kick[a] * (f[a] - f_before[a] + outer[a])
+        kicked = decay * old + (push_b - push_a)
+        change = (p[j] * old + q[j] * kicked + s[j] * (x[b] - x[a]) - kicked) * over
         v[a] -= share_a[j] * change
         v[b] += share_b[j] * change
 

@@ -276,12 +276,13 @@ def advance(
     """
     x, y, vx, vy = state
     kick_x, kick_y, pull_x, pull_y, loaded, load_x, load_y, half = chain[6:]
-    a_nodes, b_nodes, p, q, s, share_a, share_b, starts, members, offsets, operators = joints
+    pairs, (starts, members, offsets, operators) = joints[:7], joints[7:]
     nodes, weights, rest_x, rest_y = readouts
     done, mass, damping, ties, tie_stiffness, tie_damping = books
     drive_rate, ramp_time, step, limit, decay = scalars
     n = x.shape[0]
-    fx, fy, outer_x, outer_y = work[5][1:], work[6][1:], work[10], work[11]
+    fx_before, fy_before, outer_x, outer_y = work[5], work[6], work[10], work[11]
+    fx, fy = fx_before[1:], fy_before[1:]
     stretch, turn, tightness, bending, force, x_kick, y_kick = pass_views(state, work, chain)
     old, kicked = np.zeros(members.shape[0]), np.zeros(members.shape[0])
     every = max(1, int(BOOKING / step))
@@ -315,12 +316,8 @@ def advance(
             tension_pass(*tightness, half)
             moment_pass(*bending)
             force_pass(*force)
-            pair_pass(
-                x, vx, fx, outer_x, kick_x, a_nodes, b_nodes, p, q, s, share_a, share_b, decay
-            )
-            pair_pass(
-                y, vy, fy, outer_y, kick_y, a_nodes, b_nodes, p, q, s, share_a, share_b, decay
-            )
+            pair_pass(pairs, x, vx, fx_before, fx, outer_x, kick_x, decay)
+            pair_pass(pairs, y, vy, fy_before, fy, outer_y, kick_y, decay)
             if starts.shape[0] > 1:
                 group_pass(
                     x, vx, fx, outer_x, kick_x, starts, members, offsets, operators, decay, old,

@@ -1,0 +1,127 @@
+"""`make bench`: PyElastica and ours on the same scenes, in one run on one machine.
+
+Every figure is CPU time of one process on one core, from windows of both engines taken in
+turn, so that a ratio compares moments next to each other; medians are printed. Errors are of
+displacement over the first second, rms over the rms of the converged answer (kirchhoff, 16
+elements a section); PyElastica's is that of `cosserat` on the same mesh and step, which equals
+it to round-off (tests/physics/test_equality.py).
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from statistics import median
+
+import numpy as np
+from elastica import PositionVerlet
+
+from fiberweb import Scene, crosshatch, engines
+from fiberweb.engines import elastica
+from fiberweb.engines.base import AUTHORS_STEP, Numerics, steps_per_sample
+from fiberweb.engines.choose import resolve
+from fiberweb.mesh import build
+
+WINDOWS = 5
+OLD_STEPS = 300  # of PyElastica in a window
+NEW_SECONDS = 1.0  # simulated by ours in a window
+SECONDS = 100.0  # of a run of the paper
+HEADER = (
+    f"{'setup':<10} {'network':<8} {'engine':<10} {'elements':>8} {'step us':>8} {'us/step':>9} "
+    f"{'ns/el-step':>10} {'s/100 s':>9} {'error %':>8} {'ratio':>7}"
+)
+
+
+def main() -> None:
+    """Print the table."""
+    print(__doc__)
+    print(HEADER)
+    for setup, n, engine in (
+        ("described", 4, "kirchhoff"),
+        ("described", 8, "kirchhoff"),
+        ("published", 4, "cosserat"),
+    ):
+        compare(Scene(crosshatch(n, length=0.5), setup), engine)
+    print(f"\nstart, import, load compiled kernels, write: {job_overhead():.2f} s a run")
+
+
+def compare(scene: Scene, engine: str) -> None:
+    """PyElastica on the authors' mesh and step against ours at its own choice."""
+    old = Numerics("elastica", None, AUTHORS_STEP)
+    new = resolve(scene, engine=engine)
+    old_mesh, new_mesh = build(scene), build(scene, new.elements_per_section)
+    simulator, _, step, per_sample = elastica.assemble(old_mesh, old)
+    stepper, now = PositionVerlet(), 0.0
+    now = elastica.run_steps(simulator, stepper, now, step, OLD_STEPS)  # compiles
+    window = build(replace(scene, duration=NEW_SECONDS), new.elements_per_section)
+    new_steps = steps_per_sample(scene, new.time_step)
+    load = engines.load(engine)
+    load.integrate(window, new)
+    old_times, new_times = [], []
+    for _ in range(WINDOWS):
+        start = time.process_time()
+        now = elastica.run_steps(simulator, stepper, now, step, OLD_STEPS)
+        old_times.append((time.process_time() - start) / OLD_STEPS)
+        start = time.process_time()
+        load.integrate(window, new)
+        new_times.append((time.process_time() - start) / (new_steps * window.scene.samples))
+    old_rate = SECONDS * scene.sample_rate * per_sample
+    new_rate = SECONDS * scene.sample_rate * new_steps
+    ratio = median(a * old_rate / (b * new_rate) for a, b in zip(old_times, new_times))
+    old_error, new_error = errors(scene, new)
+    _row(scene, "elastica", old_mesh, old_rate, median(old_times), old_error, 1.0)
+    _row(scene, engine, new_mesh, new_rate, median(new_times), new_error, ratio)
+
+
+def errors(scene: Scene, new: Numerics) -> tuple[float, float]:
+    """Errors of PyElastica and of ours against the converged answer; nan for the published
+    setup, whose mesh and step are part of its definition."""
+    if scene.setup == "published":
+        return np.nan, np.nan
+    short = replace(scene, duration=1.0)
+
+    def moved(engine, elements, step=None):
+        numerics = Numerics(engine, elements, step or resolve(
+            short, engine=engine, elements_per_section=elements).time_step)  # fmt: skip
+        return engines.load(engine).integrate(build(short, elements), numerics).displacement
+
+    exact = moved("kirchhoff", 16)
+    scale = np.sqrt(np.mean(exact**2))
+    # PyElastica's mesh with crossings on nodes: 10 mm is not a whole part of every section
+    per_section = round(scene.network.spacing / 10e-3)
+    pair = moved("cosserat", per_section, AUTHORS_STEP), moved(*new)
+    return tuple(float(np.sqrt(np.mean((a - exact) ** 2)) / scale) for a in pair)
+
+
+def _row(scene, engine, mesh, steps, per_step, error, ratio) -> None:
+    n = scene.network.n
+    print(
+        f"{scene.setup:<10} {f'{n}x{n}':<8} {engine:<10} {mesh.elements:>8} "
+        f"{1e6 * SECONDS / steps:>8.2f} {1e6 * per_step:>9.2f} "
+        f"{1e9 * per_step / mesh.elements:>10.2f} {per_step * steps:>9.2f} "
+        f"{100 * error:>8.2f} {ratio:>7.0f}",
+        flush=True,
+    )
+
+
+def job_overhead() -> float:
+    """Wall seconds of a job beyond its physics: a run of two samples, start to file, median."""
+    code = (
+        "import tempfile\n"
+        "from fiberweb import Scene, crosshatch, simulate\n"
+        "from fiberweb.dataset import save\n"
+        "save(simulate(Scene(crosshatch(4, length=0.5), duration=0.008)),"
+        " tempfile.mkdtemp() + '/r.nc')"
+    )
+    times = []
+    for _ in range(WINDOWS):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        times.append(time.perf_counter() - start)
+    return median(times)
+
+
+if __name__ == "__main__":
+    main()
