@@ -5,6 +5,7 @@
 #   snakemake --cores 2 published    the authors' code (setup `published`)
 #   snakemake --cores 2 topology     one study alone
 #   snakemake --cores 2 claims       only the table of the paper's claims
+#   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
 import subprocess
 import sys
@@ -25,6 +26,7 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
 include: "workflow/rules/topology.smk"
 include: "workflow/rules/claims.smk"
+include: "workflow/rules/accuracy.smk"
 
 
 rule figures:

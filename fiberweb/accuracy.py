@@ -30,7 +30,6 @@ FINEST = 32  # elements per section of the finest run
 TIMED = 0.4  # s of CPU in a timing window of a planar engine, at least
 REPEATS = 3  # windows; the fastest counts
 COMPARED = 20_000  # steps over which the planar Cosserat engine is held against PyElastica
-PUSHED = 0.05  # s in which the force of the out-of-plane runs grows
 STIFF = 1e6  # N/m, the authors' crossing: stiffer than the fibres by far
 
 COLUMNS = (
@@ -42,7 +41,6 @@ LADDER_COLUMNS = (
     "rung", "change", "engine", "elements_per_section", "time_step", "seconds_per_run",
     "compared_s", "trajectory_change", "c_nl", "c_nl_change", "c_m", "c_m_change",
 )  # fmt: skip
-PLANE_COLUMNS = ("buckling_number", "time", "out_of_plane_m", "in_plane_m")
 
 
 @dataclass(frozen=True)
@@ -277,42 +275,3 @@ def ladder(
              c_nl, d_nl, c_m, d_m)
         )  # fmt: skip
     return pd.DataFrame(rows, columns=LADDER_COLUMNS)
-
-
-def out_of_plane(
-    spacing: float, buckling: list[float], seconds: float, disturbance: float
-) -> pd.DataFrame:
-    """Largest displacements out of the plane and in it of a disturbed 2x2 crosshatch.
-
-    PyElastica, in space, with a force that grows smoothly within `PUSHED` and then stays.
-
-    Args:
-        spacing: m.
-        buckling: numbers B of the force.
-        seconds: simulated.
-        disturbance: velocity out of the plane of the driven point at the start (m/s).
-
-    Returns:
-        One row for each force and sample; columns `PLANE_COLUMNS`.
-    """
-    import elastica
-
-    engine, rows = load("elastica"), []
-    for number in buckling:
-        mesh = Case("elastica", 2, 4, 3 * spacing, number).mesh(seconds)
-        scene = replace(mesh.scene, drive_rate=1.0 / PUSHED, tension_ramp=PUSHED)
-        held = np.zeros((len(mesh.drive), 4))
-        held[:, 3] = -1.0  # towards the clamped ends: the fibres that cross are compressed
-        held[0] = 2.0 / PUSHED**3, -3.0 / PUSHED**2, 0.0, 0.0
-        mesh = replace(mesh, scene=scene, drive=held)
-        numerics = Numerics("elastica", 4, SAFETY * largest_step(mesh, "elastica"))
-        simulator, rods, step, per_sample = engine.assemble(mesh, numerics)
-        middle = np.abs(mesh.load).sum(axis=1)[mesh.first[1] : mesh.first[2]] > 0
-        rods[1].velocity_collection[2, middle] += disturbance * engine.MM
-        stepper, now = elastica.PositionVerlet(), 0.0
-        for at in scene.times:
-            moved = np.concatenate([rod.position_collection.T for rod in rods]) / engine.MM
-            inside = np.abs(moved[:, :2] - mesh.position).max()
-            rows.append((number, at, np.abs(moved[:, 2]).max(), inside))
-            now = engine.run_steps(simulator, stepper, now, step, per_sample)
-    return pd.DataFrame(rows, columns=PLANE_COLUMNS)

@@ -71,7 +71,7 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     )
     if unstable:
         data.attrs["unstable_at"] = recording.unstable_at
-    kinetic, elastic, work, dissipated = recording.energy[: -1 if unstable else None].T
+    kinetic, elastic, work, dissipated = recording.energy.T
     if np.isfinite(work).any():
         residual = np.abs(kinetic + elastic + dissipated - work)
         data.attrs["energy_residual"] = float(np.nanmax(residual) / np.nanmax(np.abs(work)))

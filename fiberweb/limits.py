@@ -1,7 +1,8 @@
 """Where the engines stop being stable: the predicted limit of the step against the one found.
 
 The prediction is that of `fiberweb.engines.stability`; the finding is a bisection over whole
-runs, so the two share nothing but the mesh. Also how well undamped runs keep their energy.
+runs, so the two share nothing but the mesh. Also how well undamped runs keep their energy, and
+where motion stops being planar.
 """
 
 from __future__ import annotations
@@ -34,12 +35,14 @@ STIFF = 1e6  # N/m, the authors' crossing
 STOUT = 10.0  # spacing over diameter of the stoutest corners: the paper's own smallest
 FORCE_LIMIT, TENSION_LIMIT = 0.1, 0.15  # of EA, at the corners: beyond, strains are not small
 DRIFT_SAMPLES, DRIFT_ELEMENTS = 1000, 2
+PUSHED, PLANE_ELEMENTS = 0.05, 4  # s in which the force of the out-of-plane runs grows; its mesh
 
 COLUMNS = (
     "engine", "network", "spacing_m", "diameter_m", "tension_N", "force_N",
     "crossing_stiffness", "crossing_damping", "elements_per_section", "predicted_s", "found_s",
     "ratio", "automatic_step_status",
 )  # fmt: skip
+PLANE_COLUMNS = ("buckling_number", "time", "out_of_plane_m", "in_plane_m")
 DRIFT_COLUMNS = (
     "engine", "network", "elements", "time_step", "steps", "energy_J", "drift", "fluctuation",
 )  # fmt: skip
@@ -220,3 +223,44 @@ def drift(steps: int) -> pd.DataFrame:
             (engine, "2x2", mesh.elements, step, steps, energy, slope / energy, largest / energy)
         )
     return pd.DataFrame(rows, columns=DRIFT_COLUMNS)
+
+
+def out_of_plane(
+    buckling: list[float], seconds: float, spacing: float = 0.1, disturbance: float = 1e-6
+) -> pd.DataFrame:
+    """Largest displacements out of the plane and in it of a disturbed 2x2 crosshatch.
+
+    PyElastica, in space, with a force that grows smoothly within `PUSHED` and then stays.
+
+    Args:
+        buckling: numbers B of the force.
+        seconds: simulated.
+        spacing: m.
+        disturbance: velocity out of the plane of the driven point at the start (m/s).
+
+    Returns:
+        One row for each force and sample; columns `PLANE_COLUMNS`.
+    """
+    import elastica
+
+    engine, rows = load("elastica"), []
+    for number in buckling:
+        scene = Point(spacing=spacing, buckling=number).scene()
+        timed = {"duration": seconds, "drive_rate": 1.0 / PUSHED, "tension_ramp": PUSHED}
+        scene = replace(scene, **timed)
+        mesh = build(scene, PLANE_ELEMENTS)
+        held = np.zeros((len(mesh.drive), 4))
+        held[:, 3] = -1.0  # towards the clamped ends: the fibres that cross are compressed
+        held[0] = 2.0 / PUSHED**3, -3.0 / PUSHED**2, 0.0, 0.0
+        mesh = replace(mesh, drive=held)
+        numerics = Numerics("elastica", PLANE_ELEMENTS, SAFETY * largest_step(mesh, "elastica"))
+        simulator, rods, step, per_sample = engine.assemble(mesh, numerics)
+        middle = np.abs(mesh.load).sum(axis=1)[mesh.first[1] : mesh.first[2]] > 0
+        rods[1].velocity_collection[2, middle] += disturbance * engine.MM
+        stepper, now = elastica.PositionVerlet(), 0.0
+        for at in scene.times:
+            moved = np.concatenate([rod.position_collection.T for rod in rods]) / engine.MM
+            inside = np.abs(moved[:, :2] - mesh.position).max()
+            rows.append((number, at, np.abs(moved[:, 2]).max(), inside))
+            now = engine.run_steps(simulator, stepper, now, step, per_sample)
+    return pd.DataFrame(rows, columns=PLANE_COLUMNS)

@@ -268,6 +268,16 @@ def squared_spin(omega, weight):
     return total
 
 
+@summing
+def filter_loss(unfiltered, before, filtered, mass):
+    """What the filter takes in a step (J): unfiltered and filtered velocities after the kick,
+    and those before it."""
+    total = 0.0
+    for i in range(mass.shape[0]):
+        total += 0.5 * mass[i] * (unfiltered[i] - filtered[i]) * (before[i] + filtered[i])
+    return total
+
+
 @kernel
 def advance(
     state, work, node_arrays, element_arrays, ties, filtering, drive, readouts, books, scalars,
@@ -300,6 +310,8 @@ def advance(
     done, mass, inertia, rate, spin_rate = books
     drive_rate, ramp_time, step, limit, decay = scalars
     filtered = order > 0
+    old_x, old_y, old_o = vx.copy(), vy.copy(), omega.copy()
+    was_x, was_y, was_o = vx.copy(), vy.copy(), omega.copy()
     every = max(1, int(BOOKING / step))
     # views are made once: at a few hundred elements they would cost a fifth of the step
     x0, x1, y0, y1, vx0, vx1, vy0, vy1 = (
@@ -364,34 +376,44 @@ def advance(
                 outer_x[m] += u * load_x[i]
                 outer_y[m] += u * load_y[i]
                 done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])
+            # looked at in the middle of each interval, whose length it stands for
+            begun = (k - start) // every * every
+            count = min(every, per_sample - begun)
+            booked = k - start == begun + count // 2
+            if booked and filtered:
+                old_x[:] = vx
+                old_y[:] = vy
+                old_o[:] = omega
             velocity_pass(vxi, fx0, fx1, oxi, kxi, decay)
             velocity_pass(vyi, fy0, fy1, oyi, kyi, decay)
             spin_pass(
                 omega, alpha, couple0, couple1, length, over_edge, spin_decay, stretched,
                 over_inertia, step,
             )  # fmt: skip
-            for i in range(loaded.shape[0]):
-                m = loaded[i]
-                done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m]) / decay
-            booked = (k - start) % every == 0
             if booked:
-                span = min(every, start + per_sample - k) * step
+                span = count * step
                 lost = rate * squared_speed(vx, vy, mass)
                 for i in range(omega.shape[0]):
                     lost += inertia[i] * spin_rate[i] * omega[i] * omega[i]
                 lost += joint_power(vx, vy, joints, damping)
                 if filtered:
-                    lost += 0.5 * squared_speed(vx, vy, mass) / step
-                    lost += 0.5 * squared_spin(omega, inertia) / step
+                    was_x[:] = vx
+                    was_y[:] = vy
+                    was_o[:] = omega
             if filtered:
                 laplace_filter(views_x, firsts, lasts, stencil, scratch)
                 laplace_filter(views_y, firsts, lasts, stencil, scratch)
                 laplace_filter(views_omega, firsts, last_elements, stencil, short)
             if booked:
                 if filtered:
-                    lost -= 0.5 * squared_speed(vx, vy, mass) / step
-                    lost -= 0.5 * squared_spin(omega, inertia) / step
+                    # of leapfrog's kick, what the filter takes away never became work
+                    lost += filter_loss(was_x, old_x, vx, mass) / step
+                    lost += filter_loss(was_y, old_y, vy, mass) / step
+                    lost += filter_loss(was_o, old_o, omega, inertia) / step
                 done[1] += span * lost
+            for i in range(loaded.shape[0]):
+                m = loaded[i]
+                done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])
             drift_pass(x, vx, step)
             drift_pass(y, vy, step)
             rotate_pass(angle, omega, c, s, step)

@@ -15,7 +15,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
 from fiberweb.engines.cosserat import SHEAR_FACTOR
-from fiberweb.engines.kirchhoff import spline_matrix
+from fiberweb.engines.kirchhoff import fourth_order_layout, spline_matrix
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.mesh import Mesh
 
@@ -23,7 +23,7 @@ from fiberweb.mesh import Mesh
 def largest_step(mesh: Mesh, engine: str) -> float:
     """The largest stable step (s) of "kirchhoff", "cosserat" or "elastica" on a mesh, without
     the Laplace filter (which lets larger steps through by wiping out the modes they excite)."""
-    layout = lay_out(mesh)
+    layout = fourth_order_layout(mesh) if engine == "kirchhoff" else lay_out(mesh)
     explicit_damper = engine != "kirchhoff" and mesh.joint_damping.any()
     stiffness, mass = (_kirchhoff if engine == "kirchhoff" else _cosserat)(mesh, layout)
     root = diags_array(1.0 / np.sqrt(mass))
@@ -50,9 +50,7 @@ def largest_step(mesh: Mesh, engine: str) -> float:
 def _largest(matrix) -> float:
     """Largest eigenvalue of a symmetric matrix, to 1e-4: many equal fibres crowd its end."""
     start = np.random.RandomState(0).standard_normal(matrix.shape[0])
-    return float(
-        eigsh(matrix, k=1, which="LA", v0=start, tol=1e-4, return_eigenvectors=False)[0]
-    )
+    return float(eigsh(matrix, k=1, which="LA", v0=start, tol=1e-4, return_eigenvectors=False)[0])
 
 
 def _directions(layout: Layout):

@@ -11,13 +11,14 @@ Exudyn - a C++-based Python package for flexible multibody systems, Multibody Sy
 
 from __future__ import annotations
 
+from itertools import pairwise
 
 import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
-from fiberweb import drive
-from fiberweb.network import Network
+from fiberweb import drive, simulate
+from fiberweb.network import Network, crosshatch
 from fiberweb.scene import Scene
 
 SHEAR_FACTOR = 27.0 / 28.0  # of a round section at Poisson's ratio 1/2
@@ -70,7 +71,7 @@ def respond(scene: Scene, elements: int, step: float, slender: bool = False) -> 
         scene: of the described setup.
         elements: of three nodes, on each section.
         step: s; a whole number of them makes a sample.
-        slender: without shear and rotary inertia.
+        slender: with a tenth of shear compliance and rotary inertia (nought is singular).
 
     Returns:
         shape (samples, readouts, 2), m, in the order of `fiberweb.simulate`.
@@ -92,7 +93,7 @@ def respond(scene: Scene, elements: int, step: float, slender: bool = False) -> 
     for fibre, (near, far) in enumerate(network.fibres):
         ends = network.sections(fibre)
         along = np.concatenate(
-            [[0.0]] + [np.linspace(a, b, 2 * elements + 1)[1:] for a, b in zip(ends, ends[1:])]
+            [[0.0]] + [np.linspace(a, b, 2 * elements + 1)[1:] for a, b in pairwise(ends)]
         )
         direction = (far - near) / ends[-1]
         nodes = model.beam(near + along[:, None] * direction, section, scene.damping)
@@ -205,14 +206,14 @@ class _Model:
         ]  # fmt: skip
         system.Assemble()
         settings = _settings()
-        settings.linearSolverType = exu.LinearSolverType.EigenSparse
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
         time = settings.timeIntegration
         time.endTime = (scene.samples - 1) / scene.sample_rate
         time.numberOfSteps = round(time.endTime / step)
         time.newton.useModifiedNewton = True
         time.newton.relativeTolerance = 1e-8
         time.generalizedAlpha.spectralRadius = 0.9
-        settings.solutionSettings.sensorsWritePeriod = 1.0 / scene.sample_rate
+        settings.solution.sensors.writePeriod = 1.0 / scene.sample_rate
         system.SolveDynamic(settings)
         stored = [system.GetSensorStoredData(sensor) for sensor in sensors]
         assert all(len(data) == scene.samples for data in stored)
@@ -222,7 +223,52 @@ class _Model:
 
 def _settings():
     settings = exu.SimulationSettings()
-    settings.solutionSettings.writeSolutionToFile = False
+    settings.solution.file.write = False
     settings.timeIntegration.verboseMode = 0
     settings.staticSolver.verboseMode = 0
     return settings
+
+
+FORCE = 0.109  # N: B = 0.7 of the 2x2 network
+SCENES = {
+    "single fibre": Scene(single_fibre(), force=5e-3, duration=0.4),
+    "2x2": Scene(crosshatch(2, spacing=0.1), force=FORCE, duration=0.4),
+}
+STEP, ELEMENTS = 1e-4, 8  # of the yardstick: 16 intervals between nodes on a section
+
+
+def rms_difference(one: np.ndarray, other: np.ndarray) -> float:
+    """Of displacements, relative to the rms of the second."""
+    return float(np.sqrt(((one - other) ** 2).mean() / (other**2).mean()))
+
+
+def exudyn_rows() -> list[dict]:
+    """Differences from Exudyn at crossings and midpoints over the whole run.
+
+    Returns:
+        Rows of network, code, elements (per section), time_step (s), rms_difference. The
+        kirchhoff engine is held against slender beams (see `respond`), the cosserat engine
+        against beams with all of shear and rotary inertia. Rows of Exudyn
+        are its own errors of mesh and step, and what shear and rotary inertia change.
+    """
+    rows = []
+    for network, scene in SCENES.items():
+        full = respond(scene, ELEMENTS, STEP)
+        slender = respond(scene, ELEMENTS, STEP, slender=True)
+
+        def add(code, elements, step, one, other, network=network):
+            rows.append(
+                dict(network=network, code=code, elements=elements, time_step=step,
+                     rms_difference=rms_difference(one, other))
+            )  # fmt: skip
+
+        half = ELEMENTS // 2
+        add("exudyn", half, STEP, respond(scene, half, STEP), full)
+        add("exudyn", ELEMENTS, 2 * STEP, respond(scene, ELEMENTS, 2 * STEP), full)
+        add("exudyn slender", ELEMENTS, STEP, slender, full)
+        for engine, yardstick in (("kirchhoff", slender), ("cosserat", full)):
+            for elements in (4, 8, 16):
+                response = simulate(scene, engine=engine, elements_per_section=elements)
+                add(engine, elements, response.attrs["time_step"],
+                    response.displacement.values, yardstick)  # fmt: skip
+    return rows

@@ -32,9 +32,8 @@ changes = git("status", "--porcelain")
 calls.append({
     "commit": git("rev-parse", "HEAD"),
     "uncommitted_changes": None if changes is None else bool(changes),
-    "python": platform.python_version(),
-    "machine": platform.platform(),
+    "python": platform.python_version(), "machine": platform.platform(),
     "versions": {package: installed(package) for package in PACKAGES},
 })  # fmt: skip
 path.parent.mkdir(parents=True, exist_ok=True)
-path.write_text(json.dumps(calls, indent=2) + "\n")
+path.write_text(json.dumps(calls, indent=2))

@@ -1,0 +1,11 @@
+"""What each simplification changes, and growth out of the plane."""
+
+from logs import to_log
+
+from fiberweb.accuracy import ladder
+from fiberweb.limits import out_of_plane
+from fiberweb.tables import write
+
+to_log(snakemake.log[0])
+write(ladder(**snakemake.params.about, workers=snakemake.threads), snakemake.output.ladder)
+write(out_of_plane(**snakemake.params.plane), snakemake.output.plane)
