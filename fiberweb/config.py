@@ -75,7 +75,7 @@ class SetupSection(Section):
         None, "damper beside that spring", "N s/m", SIMULATION
     )
     damping: NotNegative | None = _key(None, "rate at which velocity decays", "1/s", "")
-    filter_order: Annotated[int, Field(ge=0, le=20)] | None = _key(
+    filter_order: Annotated[int, Field(ge=0, le=6)] | None = _key(
         None, "order of the Laplace filter on velocities at every step, 0 for none"
     )
     ends: Literal["clamped", "sliding", "pinned"] | None = _key(

@@ -11,7 +11,7 @@ import xarray as xr
 
 from fiberweb.drive import spline
 from fiberweb.engines.base import Numerics, Recording
-from fiberweb.engines.jit import source_hash
+from fiberweb.engines.source import source_hash
 from fiberweb.mesh import Mesh
 
 ENGINE_PACKAGES = {"elastica": ("pyelastica", "numba", "numpy")}

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 def unknown_key(key: str, known, where: str = "") -> str:
     """The sentence for a key that does not exist, with the nearest one that does."""
     near = get_close_matches(str(key), [str(k) for k in known], n=1, cutoff=0.0)
-    return f"unknown key {where}{key!r}: the nearest valid key is {where}{near[0]!r}"
+    return f"unknown key '{where}{key}': the nearest valid key is '{where}{near[0]}'"
 
 
 def sentence(error, where: str = "", known=()) -> str:

@@ -7,21 +7,10 @@ leave a stale caller behind.
 
 from __future__ import annotations
 
-import hashlib
 import os
 from pathlib import Path
 
-HERE = Path(__file__).parent
-PHYSICS = ("mesh.py", "drive.py", "scene.py", "network.py")
-
-
-def source_hash() -> str:
-    """Hash of everything that a trajectory depends on in this package."""
-    files = sorted(HERE.glob("*.py")) + [HERE.parent / name for name in PHYSICS]
-    digest = hashlib.sha256()
-    for file in files:
-        digest.update(file.read_bytes())
-    return digest.hexdigest()[:12]
+from fiberweb.engines.source import source_hash
 
 
 def _cache_folder() -> Path:
