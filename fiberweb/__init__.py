@@ -5,11 +5,12 @@ response = simulate(Scene(crosshatch(4, length=0.5), duration=20.0))
 print(score(response).c_nl)
 """
 
+from fiberweb.explain import explain
 from fiberweb.network import crosshatch, polygon
 from fiberweb.scene import Scene
 from fiberweb.simulation import simulate
 
-__all__ = ["Scene", "crosshatch", "polygon", "score", "simulate"]
+__all__ = ["Scene", "crosshatch", "explain", "polygon", "score", "simulate"]
 
 
 def __getattr__(name):

@@ -185,7 +185,7 @@ class AccuracySection(Section):
     length: Positive = _key(0.5, "fibre length", "m")
     buckling: Positive = _key(0.8, "buckling number of the force")
     seconds: Positive = _key(1.0, "length of the runs whose trajectories are compared", "s")
-    duration: Positive = _key(100.0, "length of the runs that are scored", "s")
+    duration: Positive = _key(50.0, "length of the runs that are scored", "s")
     window: Annotated[int, Field(ge=10)] = _key(2000, "steps in which PyElastica is timed")
     plane: list[Positive] = _key(
         [0.3, 0.5, 0.8, 1.5], "buckling numbers of the runs that may leave the plane"

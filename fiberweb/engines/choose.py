@@ -62,6 +62,11 @@ def resolve(
 
 def check(scene: Scene, accuracy, engine, elements_per_section, time_step) -> None:
     """Refuse what can be refused without a mesh; see `resolve`."""
+    if scene.tension >= scene.axial_stiffness:
+        raise ValueError(
+            f"tension = {scene.tension:g} N: no fibre holds a pull of EA = "
+            f"{scene.axial_stiffness:g} N or more, so take a smaller one"
+        )
     if engine is not None and engine not in ENGINES:
         raise ValueError(f"engine = {engine!r}: {unknown_key(engine, ENGINES)}")
     if accuracy is not None:

@@ -32,7 +32,7 @@ def joint_operators(mesh: Mesh, layout: Layout, step: float):
         operators, operators (P, Q, S of each group, each row by row).
     """
     pairs, others = [], []
-    for nodes, spring, damper in _groups(mesh, layout):
+    for nodes, spring, damper in joint_groups(mesh, layout):
         mass = layout.mass[nodes]
         if len(nodes) == 2:
             operators = _pair_operators(
@@ -53,7 +53,7 @@ def joint_operators(mesh: Mesh, layout: Layout, step: float):
     )  # fmt: skip
 
 
-def _groups(mesh: Mesh, layout: Layout):
+def joint_groups(mesh: Mesh, layout: Layout):
     """Nodes that meet at each crossing, with their spring and damper matrices."""
     size = len(layout.mass)
     a, b = layout.joints.T

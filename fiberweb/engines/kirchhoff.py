@@ -183,17 +183,17 @@ def turn_pass(tx0, tx1, ty0, ty1, over_span, curvature, slope):
 def tension_pass(curvature0, curvature1, inverse, axial, edge, tension, bowing, half):
     """Tension of each edge with its bow, and the derivative of its energy by curvature.
 
-    The energy of an edge of length l = l0 / g is EA l0 (1/g - 1 + log g + (1 - g) B + B^2 / 2),
-    with B = b^2 / 24 what its bow adds to its length: that of the stress law at l0 (1 + B + ...)
-    to the order that matters, and free of a division.
+    The energy of an edge of length l = l0 / g is EA l0 (1/g - 1 + log g + (1/g - 1) B + B^2 / 2),
+    with B = b^2 / 24 what its bow adds to its length: that of the stress law at l + l0 B to the
+    order that matters, and bounded below however far the edge is compressed.
     """
     for i in range(tension.shape[0]):
         g = edge[i] * inverse[i]
         reach = half * edge[i]
         b = reach * (curvature0[i] + curvature1[i])
         longer = b * b * (1.0 / 24.0)
-        tension[i] = axial[i] * (1.0 - g + g * g * longer)
-        bowing[i] = axial[i] * edge[i] * reach * b * (1.0 - g + longer) * (1.0 / 12.0)
+        tension[i] = axial[i] * (1.0 - g + longer)
+        bowing[i] = axial[i] * edge[i] * reach * b * (1.0 / g - 1.0 + longer) * (1.0 / 12.0)
 
 
 @kernel
@@ -244,7 +244,7 @@ def strain_energy(x, y, chain):
         g = edge[i] / np.sqrt((x[i + 1] - x[i]) ** 2 + (y[i + 1] - y[i]) ** 2)
         longer = (half * edge[i] * (k[i] + k[i + 1])) ** 2 / 24.0
         stretch = 1.0 / g - 1.0 + np.log(g)
-        total += axial[i] * edge[i] * (stretch + (1.0 - g) * longer + 0.5 * longer * longer)
+        total += axial[i] * edge[i] * (stretch + (1.0 / g - 1.0 + 0.5 * longer) * longer)
     return total
 
 

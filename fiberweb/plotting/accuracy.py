@@ -30,6 +30,15 @@ SWEPT = {
     "elements_per_section": ("Elements per section", 1.0),
     "force_N": ("Force (N)", 1.0),
 }
+MIDDLE = {  # of the box: `limits.Point`'s defaults
+    "spacing_m": 0.1,
+    "diameter_m": 2e-3,
+    "tension_N": 0.01,
+    "crossing_stiffness": 70.0,
+    "crossing_damping": 3.0,
+    "elements_per_section": 4,
+    "network": "2x2",
+}
 
 
 def draw_speed(table: pd.DataFrame, path: str | Path) -> Figure:
@@ -198,16 +207,12 @@ def _agreement(ax: Axes, table: pd.DataFrame) -> None:
 def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) -> None:
     """The points that differ from the middle of the box in this column alone, and in what
     follows it: the force of a buckling number."""
-    follows = {
-        "spacing_m": ["force_N"],
-        "diameter_m": ["force_N"],
-    }
-    free = [column, *follows.get(column, [])]
-    others = [name for name in (*SWEPT, "crossing_damping", "network") if name not in free]
     for engine in ("cosserat", "kirchhoff"):
         rows = table[table["engine"] == engine]
-        middle = rows[others].mode().iloc[0]
-        alike = (rows[others] == middle).all(axis=1) & np.isfinite(rows[column])
+        same = {name: rows[name] == value for name, value in MIDDLE.items() if name != column}
+        alike = np.logical_and.reduce(list(same.values())) & np.isfinite(rows[column])
+        if column not in ("spacing_m", "diameter_m", "force_N"):
+            alike &= rows["force_N"] == rows.loc[alike, "force_N"].mode()[0]
         rows = rows[alike].sort_values([column, "predicted_s"])
         x = rows[column] * unit
         ax.plot(x, 1e6 * rows["predicted_s"], color=COLOUR[engine], lw=0.8)

@@ -68,7 +68,7 @@ def test_limits_of_long_fibres(elements):
     """Shear against rotation and stretch together in the Cosserat rod, h = 2 / sqrt(a G A / (rho
     I) + 4 (E + a G) / (rho l^2)), within 3 % as the ends matter most to short elements; axial
     waves alone in the Kirchhoff rod, h = l / c, within 0.2 %."""
-    mesh = fibre(elements, 0.2)
+    mesh = fibre(elements, 0.2, ends="sliding")  # a free end is lighter at fourth order
     scene, length = mesh.scene, 0.2 / elements
     shear = SHEAR_FACTOR * scene.youngs_modulus / 3.0
     rotation = shear * scene.area / (scene.bending_stiffness / scene.youngs_modulus)
@@ -84,7 +84,7 @@ def test_fibres_gone_are_seen_beside_one_that_is_well(engine):
     one = single_fibre()
     mesh = side_by_side(one, one, one)
     mesh = replace(
-        mesh, drive=one.drive, scene=one.scene, joints=mesh.first[1:3].reshape(1, 2) + [5, 6],
+        mesh, drive=one.drive, scene=one.scene, joints=np.add([[5, 6]], mesh.first[1:3]),
         joint_stiffness=np.array([70.0]), joint_damping=np.array([1000.0]),
     )  # fmt: skip
     recording = record(mesh, engine, 0.9 * largest_step(one, engine), samples=3)
