@@ -72,7 +72,7 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     if unstable:
         data.attrs["unstable_at"] = recording.unstable_at
     kinetic, elastic, work, dissipated = recording.energy.T
-    if np.isfinite(work).any():
+    if np.nanmax(np.abs(work), initial=0.0) > 0.0:
         residual = np.abs(kinetic + elastic + dissipated - work)
         data.attrs["energy_residual"] = float(np.nanmax(residual) / np.nanmax(np.abs(work)))
     return data

@@ -12,7 +12,7 @@ from fiberweb.scene import Scene
 
 AUTHORS_STEP = 5e-6  # s
 CHUNK = 250  # samples between two returns to Python
-RUNAWAY = 10.0  # a node faster than this many axial wave speeds has left the physics
+RUNAWAY = 1.0  # a node faster than this many axial wave speeds has left the physics
 
 
 class Numerics(NamedTuple):

@@ -93,8 +93,8 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
     for sample in range(mesh.scene.samples):
         at = np.concatenate([rod.position_collection[:2].T for rod in rods]) / MM - rest
         out[sample] = np.einsum("rk,rkc->rc", weights, at[nodes])
-        fastest = max(np.abs(rod.velocity_collection).max() for rod in rods)
-        if not fastest < limit:
+        fastest = np.max([np.abs(rod.velocity_collection).max() for rod in rods])  # NaN if any is
+        if not (fastest < limit and np.isfinite(at).all()):
             out[sample:] = np.nan
             return Recording(out, unbooked, sample / mesh.scene.sample_rate)
         if sample + 1 < mesh.scene.samples:

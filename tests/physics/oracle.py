@@ -48,13 +48,15 @@ def kirchhoff_energy(nodes, rest, scene: Scene, clamped: bool, order: int = 4):
         excess = form - np.diag((before + after) / 3)
         excess -= np.diag(between / 6, 1) + np.diag(between / 6, -1)
         form = form + excess + excess @ np.diag(1 / span) @ excess
+        if clamped and len(span) > 2 and np.allclose(rest_length[:3], rest_length[0]):
+            form[:3, :3] += rest_length[0] / 108 * np.outer([3, -4, 1], [3, -4, 1])
         straight = np.zeros((*curvature.shape[:-1], 1))
         ends = [curvature, straight] if clamped else [straight, curvature, straight]
         everywhere = np.concatenate(ends, axis=-1)
         bow = (0.5 * rest_length * (everywhere[..., 1:] + everywhere[..., :-1])) ** 2 / 24
     bending = 0.5 * np.einsum("...i,ij,...j", curvature, form, curvature)
     ratio = rest_length / length
-    stretching = 1 / ratio - 1 + np.log(ratio) + (1 - ratio) * bow + 0.5 * bow**2
+    stretching = 1 / ratio - 1 + np.log(ratio) + (1 / ratio - 1 + 0.5 * bow) * bow
     stretching = (rest_length * stretching).sum(-1)
     return scene.bending_stiffness * bending + scene.axial_stiffness * stretching
 
