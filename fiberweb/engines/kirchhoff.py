@@ -234,24 +234,22 @@ def kick_pass(x, v, f0, f1, outer, kick, decay, step):
 
 
 @kernel
-def strain_energy(x, y, chain):
-    """Elastic energy of the fibres at given positions (J); the potential of the passes."""
+def strain_energy(x, y, chain, work):
+    """Elastic energy of the fibres at given positions (J); the potential of the passes, whose
+    scratch it uses."""
     axial, edge, over_span, c, c_up, c_up2 = chain[:6]
     half = chain[13]
-    n = x.shape[0]
-    k = np.zeros(n)
-    for i in range(1, n - 1):
-        ax, ay, bx, by = x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i]
-        over = 1.0 / np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by))
-        k[i] = 3.0 * over_span[i] * (ax * by - ay * bx) * over / (2.0 + (ax * bx + ay * by) * over)
+    tx, ty, inverse, k, slope = work[0][1:], work[1][1:], work[2][1:], work[8], work[9]
+    stretch_pass(x[:-1], x[1:], y[:-1], y[1:], tx, ty, inverse)
+    turn_pass(tx[:-1], tx[1:], ty[:-1], ty[1:], over_span[1:-1], k[1:-1], slope[1:-1])
     total = 0.0
-    for i in range(n - 2):
+    for i in range(k.shape[0] - 2):
         total += k[i] * (0.5 * c[i] * k[i] + c_up[i] * k[i + 1] + c_up2[i] * k[i + 2])
-    for i in range(n - 1):
-        g = edge[i] / np.sqrt((x[i + 1] - x[i]) ** 2 + (y[i + 1] - y[i]) ** 2)
+    for i in range(edge.shape[0]):
+        g = edge[i] * inverse[i]
         longer = (half * edge[i] * (k[i] + k[i + 1])) ** 2 / 24.0
-        stretch = 1.0 / g - 1.0 + np.log(g)
-        total += axial[i] * edge[i] * (stretch + (1.0 / g - 1.0 + 0.5 * longer) * longer)
+        e = 1.0 / g - 1.0
+        total += axial[i] * edge[i] * (e + np.log(g) + (e + 0.5 * longer) * longer)
     return total
 
 
@@ -318,7 +316,7 @@ def advance(
         record(x, y, vx, vy, nodes, weights, rest_x, rest_y, 0.5 * step, out[sample])
         here_x, here_y = x - 0.5 * step * vx, y - 0.5 * step * vy
         energy[sample, 0] = 0.5 * squared_speed(vx, vy, mass)
-        energy[sample, 1] = strain_energy(here_x, here_y, chain)
+        energy[sample, 1] = strain_energy(here_x, here_y, chain, work)
         energy[sample, 1] += joint_energy(here_x, here_y, ties, tie_stiffness)
         pulled = outer_work(here_x - rest_x, here_y - rest_y, pull_x, pull_y)
         start = (first + sample) * per_sample
