@@ -3,7 +3,7 @@ out and why, and what it costs."""
 
 from __future__ import annotations
 
-from fiberweb.engines.choose import ACCURACIES, SAFETY, resolve
+from fiberweb.engines.choose import ACCURACIES, resolve, safety
 from fiberweb.scene import Scene
 
 # Measured by `snakemake speed_accuracy`, described 4x4 and 8x8 of 0.5 m at B = 0.8, the worse of
@@ -100,8 +100,8 @@ def _against(step: float, limit: float, scene: Scene) -> str:
     if step > limit:
         return f"above the limit of {1e6 * limit:.3g} us: the run will most likely blow up"
     return (
-        f"{step / limit:.2f} of the limit of {1e6 * limit:.3g} us (at most {SAFETY:g} by itself; "
-        "rounded down to divide the sample period)"
+        f"{step / limit:.2f} of the limit of {1e6 * limit:.3g} us (at most {safety(scene):g} by "
+        "itself; rounded down to divide the sample period)"
     )
 
 

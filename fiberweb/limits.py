@@ -16,7 +16,7 @@ import pandas as pd
 from fiberweb.drive import spline
 from fiberweb.engines import load
 from fiberweb.engines.base import Numerics, Recording
-from fiberweb.engines.choose import SAFETY
+from fiberweb.engines.choose import SAFETY, safety
 from fiberweb.engines.stability import largest_step
 from fiberweb.mesh import Mesh, build
 from fiberweb.network import crosshatch
@@ -149,7 +149,7 @@ def measure(point: Point, steps: int) -> tuple:
     predicted = largest_step(gentle, point.engine)
     found = found_limit(gentle, point.engine, predicted, steps)
     mesh = build(scene, point.elements)
-    automatic = run_for(mesh, point.engine, SAFETY * predicted, LOADED * steps)
+    automatic = run_for(mesh, point.engine, safety(mesh.scene) * predicted, LOADED * steps)
     return (
         point.engine, f"{point.n}x{point.n}", point.spacing, point.diameter, point.tension,
         scene.force, point.stiffness, point.damping, point.elements, predicted, found,

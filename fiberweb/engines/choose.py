@@ -8,6 +8,7 @@ from fiberweb.scene import Scene
 ENGINES = ("kirchhoff", "cosserat", "elastica")
 ACCURACIES = {"draft": 2, "standard": 4, "fine": 8, "reference": 16}  # elements per section
 SAFETY = 0.9  # of the linear limit: compression and tension stiffen a fibre a little
+VIOLENT, VIOLENT_SAFETY = 0.01, 0.4  # of EA in force or tension; above it, of the linear limit
 
 
 def resolve(
@@ -26,7 +27,8 @@ def resolve(
             setup only, and instead of engine, mesh and step.
         engine: "kirchhoff", "cosserat" or "elastica".
         elements_per_section: see `fiberweb.mesh.build`.
-        time_step: s; by default 0.9 of the limit, or the authors' 5 us in the published setup.
+        time_step: s; by default 0.9 of the limit (see `safety`), or the authors' 5 us in the
+            published setup.
         force_time_step: accept a step above the limit, to see it fail.
 
     Returns:
@@ -51,13 +53,23 @@ def resolve(
         return Numerics(engine, elements_per_section, AUTHORS_STEP)
     limit = largest_step(mesh, engine)
     if time_step is None:
-        time_step = SAFETY * limit
+        time_step = safety(scene) * limit
     if time_step > limit and not force_time_step and not scene.filter_order:
         raise ValueError(
             f"time_step = {time_step:.3g} s is above the stability limit of {limit:.3g} s of the "
             f"{engine} engine on this mesh; take a smaller one or leave it out"
         )
     return Numerics(engine, elements_per_section, time_step)
+
+
+def safety(scene: Scene) -> float:
+    """Share of the linear limit that the automatic step takes.
+
+    A force or a tension above a hundredth of EA can fling a fibre about and strain it by tens of
+    percent, and then bow and stretch make it stiffer than the straight one that the limit is of.
+    """
+    strain = max(scene.force, scene.tension) / scene.axial_stiffness
+    return SAFETY if strain < VIOLENT else VIOLENT_SAFETY
 
 
 def check(scene: Scene, accuracy, engine, elements_per_section, time_step) -> None:

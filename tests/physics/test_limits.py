@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from fiberweb.engines.choose import SAFETY
+from fiberweb.engines.choose import safety
 from fiberweb.engines.stability import largest_step
 from fiberweb.limits import (
     FORCE_LIMIT,
@@ -95,10 +95,18 @@ def places(draw):
 
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(places(), st.floats(1.5, 3.0))
+# a stout, softly tied fibre that is flung about: unstable at 0.9 of the straight network's limit
+@example(
+    Point(
+        n=2, spacing=np.exp(-4.0), diameter=np.exp(-6.0), tension=0.0, stiffness=1.0, damping=0.0,
+        elements=3, buckling=1.0,
+    ),
+    2.0,
+)  # fmt: skip
 def test_random_scenes_end_ok_or_say_that_they_are_unstable(point, factor):
     mesh = build(point.scene(), point.elements)
     limit = largest_step(mesh, point.engine)
-    assert status(run_for(mesh, point.engine, SAFETY * limit, BOUNDED)) == "ok"
+    assert status(run_for(mesh, point.engine, safety(mesh.scene) * limit, BOUNDED)) == "ok"
     forced = run_for(mesh, point.engine, factor * limit, BOUNDED)
     assert status(forced) in ("ok", "unstable")
     assert (status(forced) == "ok") == bool(np.isfinite(forced.displacement).all())
