@@ -3,6 +3,7 @@
 #
 #   snakemake --cores 2 figures      the paper's text (setup `described`)
 #   snakemake --cores 2 published    the authors' code (setup `published`)
+#   snakemake published_all --profile profiles/slurm      every run of the authors, on a cluster
 #   snakemake --cores 2 topology     one study alone
 #   snakemake --cores 2 claims       only the table of the paper's claims
 #   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
@@ -25,6 +26,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
 include: "workflow/rules/topology.smk"
+include: "workflow/rules/studies.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/accuracy.smk"
 
@@ -32,16 +34,21 @@ include: "workflow/rules/accuracy.smk"
 rule figures:
     default_target: True
     input:
-        [figure(study, "described") for study in STUDIES],
-        [f"<results>/tables/{table}.csv" for table in all_tables()],
+        [figure(study, "described") for study in DRAWN],
+        lambda wildcards: merged(),
         rules.claims.output,
 
 
 rule published:
     input:
-        [figure(study, "published") for study in STUDIES],
-        [f"<results>/tables/{table}.csv" for table in all_tables()],
+        [figure(study, "published") for study in DRAWN if "published" in STUDY_SETUPS[study]],
+        lambda wildcards: merged(),
         rules.claims.output,
+
+
+rule published_all:
+    input:
+        rules.published.input,
 
 
 onstart:

@@ -22,6 +22,11 @@ def authors_reference_force(spacing: float) -> float:
     return 50e-6 / spacing**3
 
 
+def critical_force(spacing: float, diameter: float, youngs_modulus: float) -> float:
+    """F_max (N) at which B = 1, Eq. 4; spacing and diameter in m, E in Pa."""
+    return 2 * np.pi**2 * youngs_modulus * second_moment(diameter) / spacing**2
+
+
 def buckling_number(force: float, spacing: float, bending_stiffness: float) -> float:
     """B = P s^2 / (pi^2 EI) with P = F_max / 2, Eq. 4; dimensionless."""
     return 0.5 * force * spacing**2 / (np.pi**2 * bending_stiffness)

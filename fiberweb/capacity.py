@@ -214,7 +214,10 @@ def score(
     return xr.Dataset(variables, coords, attrs)
 
 
-_KEPT = ("status", "unstable_at", "setup", "scene", "run", "engine", "sample_rate")
+_KEPT = (
+    "status", "unstable_at", "setup", "scene", "run", "engine", "elements_per_section", "time_step",
+    "sample_rate",
+)  # fmt: skip
 _VARIABLES = {
     "nonlinear": ("order", "capacity for Legendre polynomials"),
     "memory": ("lag", "capacity for recall"),

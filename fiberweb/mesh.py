@@ -46,6 +46,7 @@ class Mesh:
         drive: cubic coefficients of u on each knot interval, highest power first, shape
             (intervals, 4); the interval is 1 / scene.drive_rate s long.
         readouts: what is recorded.
+        start: displacement at t = 0, shape (nodes, 2), m.
     """
 
     scene: Scene
@@ -60,6 +61,7 @@ class Mesh:
     joint_damping: np.ndarray
     drive: np.ndarray
     readouts: tuple[Readout, ...]
+    start: np.ndarray
 
     @property
     def elements(self) -> int:
@@ -105,6 +107,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     first = np.cumsum([0] + [len(line.points) for line in lines])
     joints, stiffness, damping = _joints(scene, lines, first)
     held, pull = _ends(scene, lines, first)
+    load = _load(scene, lines, first)
     return Mesh(
         scene=scene,
         position=position,
@@ -112,12 +115,13 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
         held=held,
         clamped=np.full(len(lines), scene.ends == "clamped"),
         pull=pull,
-        load=_load(scene, lines, first),
+        load=load,
         joints=joints,
         joint_stiffness=stiffness,
         joint_damping=damping,
         drive=np.ascontiguousarray(spline(scene.seed, scene.duration, scene.drive_rate).c.T),
         readouts=_readouts(scene, lines, first),
+        start=load * (scene.disturbance / scene.force),
     )
 
 

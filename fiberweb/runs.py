@@ -1,19 +1,21 @@
-"""The run table: which scenes each study simulates, how, and what each run is called.
+"""The run table: how each study's scenes are simulated, and what each run is called.
 
-A study is a section of the config and a function here that yields its scenes. Studies that ask
-for the same scene share the run, because its name holds a hash of all that it depends on.
+Studies that ask for the same scene share the run, because its name holds a hash of all that it
+depends on.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from fiberweb.config import AUTHORS_SKIP, Config
-from fiberweb.network import Network, crosshatch, polygon
 from fiberweb.scene import Scene
+from fiberweb.studies import STUDIES, Best
 
 SETUPS = ("described", "published")
 EXAMPLE = 8  # N of the crosshatch whose computations Fig. 1d shows
@@ -27,14 +29,16 @@ class Run:
         scene: the physics.
         numerics: keyword arguments of `fiberweb.simulate` beside the scene.
         scoring: keyword arguments of `fiberweb.score` beside the response.
+        choice: where the study took the force from; see `fiberweb.studies.Point`.
         name: what it is, and a hash of scene and numerics.
     """
 
     scene: Scene
     numerics: dict = field(hash=False)
     scoring: dict = field(hash=False)
+    choice: str = ""
 
-    @property
+    @cached_property
     def name(self) -> str:
         """For instance crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-3fa9c1, SI prefixes as marked."""
         network = self.scene.network
@@ -60,42 +64,54 @@ class Run:
             raise ValueError(f"{self.name}: {error}") from None
 
 
-def topology(config: Config, setup: str) -> Iterator[Scene]:
-    """Crosshatches and polygons of one outer length and rising N (Fig. 1)."""
-    section = config.topology
-    for n in section.crosshatch:
-        yield scene(config, setup, crosshatch(n, length=section.length))
-    for n in section.polygon:
-        diagonals = getattr(section.diagonals, setup)
-        yield scene(config, setup, polygon(n, section.length, diagonals))
+def check(found: Iterable[Run]) -> None:
+    """`Run.check` for runs of a table, where it can differ from one to the next.
+
+    Finding the limit of a step costs some 20 ms, so it is done for every run only if the config
+    gives a step of its own, and for one run of each kind of model otherwise.
+    """
+    kinds = {}
+    for run in found:
+        scene = run.scene
+        model = (scene.setup, scene.network.topology, scene.ends, scene.filter_order)
+        kind = (*model, math.isinf(scene.crossing_stiffness), json.dumps(run.numerics))
+        own_step = run.name if "time_step" in run.numerics and scene.setup == "described" else ""
+        kinds.setdefault((*kind, own_step), run)
+    for run in kinds.values():
+        run.check()
 
 
-STUDIES: dict[str, Callable[[Config, str], Iterator[Scene]]] = {"topology": topology}
+def runs(
+    config: Config, study: str, setup: str, best: Best | None = None, full: bool = False
+) -> list[Run]:
+    """The runs of a study in one setup, in its order, each once for each choice of the force.
 
-
-def scene(config: Config, setup: str, network: Network, **changes) -> Scene:
-    """A network with the config's physics in one setup; changes win over the config."""
-    overrides = getattr(config.setups, setup).model_dump()
-    return Scene(network, setup, **config.scene.model_dump() | overrides | changes)
-
-
-def runs(config: Config, study: str, setup: str) -> list[Run]:
-    """The runs of a study in one setup, each once, in the order of the study."""
-    numerics = _given(config.numerics.model_dump()) if setup == "described" else {}
+    Args:
+        config: the whole config.
+        study, setup: names.
+        best: what the ridge found, for the studies that start from it; None for all that it
+            could find.
+        full: all that the authors ran, in the published setup too.
+    """
+    general = _given(config.numerics.model_dump()) if setup == "described" else {}
     found = {}
-    for each in STUDIES[study](config, setup):
+    for point in STUDIES[study](config, setup, best, full):
         scoring = {"alpha": config.scoring.alpha}
-        if setup == "published" and each.network.topology == "polygon":
+        if setup == "published" and point.scene.network.topology == "polygon":
             scoring["skip"] = AUTHORS_SKIP
-        run = Run(each, numerics, scoring)
-        found.setdefault(run.name, run)
+        numerics = general if point.numerics is None else point.numerics
+        run = Run(point.scene, numerics, scoring, point.choice)
+        found.setdefault((run.name, run.choice), run)
     return list(found.values())
 
 
 def run_table(config: Config) -> dict[str, Run]:
-    """Every run of every study and setup by name."""
+    """Every run that any study of any setup may ask for, by name."""
     return {
-        run.name: run for study in STUDIES for setup in SETUPS for run in runs(config, study, setup)
+        run.name: run
+        for study in STUDIES
+        for setup in SETUPS
+        for run in runs(config, study, setup, full=True)
     }
 
 

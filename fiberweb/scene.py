@@ -62,6 +62,8 @@ class Scene:
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
         tension_ramp: time over which the tension grows from zero (s).
+        disturbance: lateral displacement of the driven point at the start (m), for twin runs.
+        centre_lines: record every node of the fibres as well, to draw them.
 
     Raises:
         ValueError: one sentence naming the field, its value and what would be right.
@@ -84,6 +86,8 @@ class Scene:
     filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
     ends: Literal["clamped", "sliding", "pinned"] | None = None
     tension_ramp: NotNegative = 0.25
+    disturbance: NotNegative = 0.0
+    centre_lines: Annotated[bool, Field(strict=True)] = False
 
     def __post_init__(self):
         if not isinstance(self.network, Network):

@@ -47,7 +47,7 @@ def _range(schema: dict) -> str:
     if "anyOf" in schema:
         return " or ".join(_range(part) for part in schema["anyOf"])
     if "enum" in schema:
-        return ", ".join(schema["enum"])
+        return ", ".join(map(str, schema["enum"]))
     if schema["type"] == "array":
         return f"list: {_range(schema['items'])}"
     bounds = {"exclusiveMinimum": "> {:g}", "minimum": "≥ {:g}", "maximum": "≤ {:g}"}

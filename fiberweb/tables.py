@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -15,6 +15,21 @@ COLUMNS = (
     "setup", "topology", "n", "spacing_m", "force_N", "tension_N", "buckling_number",
     *SCALARS, "status", "run",
 )  # fmt: skip
+PHYSICS = {
+    "crossing_stiffness_N_m": lambda scene, _: scene.crossing_stiffness,
+    "crossing_damping_Ns_m": lambda scene, _: scene.crossing_damping,
+    "damping_per_s": lambda scene, _: scene.damping,
+    "filter_order": lambda scene, _: scene.filter_order,
+    "seed": lambda scene, _: scene.seed,
+    "disturbance_m": lambda scene, _: scene.disturbance,
+    "duration_s": lambda scene, _: scene.duration,
+}
+NUMERICS = {
+    "engine": lambda _, scored: scored.attrs["engine"],
+    "elements_per_section": lambda _, scored: scored.attrs["elements_per_section"],
+    "time_step_s": lambda _, scored: scored.attrs["time_step"],
+}
+BEST_COLUMNS = ("setup", "spacing_m", "choice", "force_N", "buckling_number", "capacity")
 CURVE_COLUMNS = ("setup", "topology", "n", "target", "at", "c", "c_train", "c_raw", "run")
 FLOOR_COLUMNS = ("readout", "c_nl", "c_m")
 # Rows are put in this order, so that a table does not depend on the order in which runs end.
@@ -42,6 +57,46 @@ def rows(capacity_paths: Iterable[str | Path], **extra: object) -> pd.DataFrame:
         dimensionless and NaN for an unstable run.
     """
     return _frame([_row(*_read_run(path), extra) for path in capacity_paths], (*COLUMNS, *extra))
+
+
+def study(capacity_paths: Sequence[str | Path], choices: Sequence[str]) -> pd.DataFrame:
+    """One row for each run and choice of its force, with `STUDY_COLUMNS` after `COLUMNS`.
+
+    Args:
+        capacity_paths: as for `rows`; a run that two choices agree on comes twice.
+        choices: of each path, see `fiberweb.studies.Point`.
+    """
+    records = []
+    for path, choice in zip(capacity_paths, choices, strict=True):
+        scene, scored = _read_run(path)
+        records.append(_row(scene, scored, {"force_choice": choice} | PHYSICS | NUMERICS))
+    return _frame(records, (*COLUMNS, "force_choice", *PHYSICS, *NUMERICS))
+
+
+def best_unbuckled(ridge: pd.DataFrame) -> pd.DataFrame:
+    """The force below B = 1 with the best C_nl, and the one with the best C_m, of each spacing.
+
+    Args:
+        ridge: the ridge's table of one setup.
+
+    Returns:
+        Columns setup, spacing_m, choice ("best_c_nl" or "best_c_m"), force_N, buckling_number and
+        capacity; no row where no run below B = 1 was stable.
+    """
+    stable = ridge[(ridge["status"] == "ok") & (ridge["buckling_number"] < 1.0)]
+    records = []
+    for spacing, frame in stable.groupby("spacing_m"):
+        for column in ("c_nl", "c_m"):
+            row = frame.loc[frame[column].idxmax()]
+            found = (row["force_N"], row["buckling_number"], row[column])
+            records.append((row["setup"], spacing, f"best_{column}", *found))
+    return _frame(records, BEST_COLUMNS)
+
+
+def read_best(path: str | Path) -> dict[tuple[str, float], float]:
+    """What `best_unbuckled` found: (choice, spacing in m) to force in N."""
+    frame = read(path)
+    return dict(zip(zip(frame["choice"], frame["spacing_m"]), frame["force_N"]))
 
 
 def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:

@@ -83,8 +83,11 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     size = len(layout.x)
     angle = np.arctan2(np.diff(layout.y), np.diff(layout.x))
     angle[angle < -np.pi + 1e-6] += 2 * np.pi  # a fibre along -x must not straddle the cut
+    x, y = layout.x.copy(), layout.y.copy()
+    x[layout.at] += mesh.start[:, 0]
+    y[layout.at] += mesh.start[:, 1]
     state = (
-        layout.x.copy(), layout.y.copy(), np.zeros(size), np.zeros(size),
+        x, y, np.zeros(size), np.zeros(size),
         angle, np.zeros(size - 1), np.cos(angle), np.sin(angle),
     )  # fmt: skip
     work = tuple(np.zeros(size) for _ in range(8))

@@ -25,7 +25,7 @@ rule merge:
 rule claims:
     input:
         code=code("claims.py", "claims.yaml", "tables.py"),
-        tables=[f"<results>/tables/{table}.csv" for table in all_tables()],
+        tables=lambda wildcards: merged(),
         published=authors_tables(),
     output:
         report("<results>/tables/claims.csv", caption="../report/claims.rst", category="Claims"),

@@ -5,10 +5,13 @@ from glob import glob
 from pathlib import Path
 
 from fiberweb.config import check_folders, load
-from fiberweb.runs import SETUPS, STUDIES, example, run_table, runs
+from fiberweb.runs import SETUPS, STUDIES, check, example, run_table, runs
+from fiberweb.tables import read_best
 
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
+PUBLISHED = {"published", "published_all"}
 TABLES = {}  # the tables of each study; its rule file adds them
+FROM_RIDGE = ("size", "pretension")  # studies at the best force that the ridge found
 
 
 def response(run):
@@ -19,8 +22,33 @@ def capacity(run):
     return f"{RESULTS}/runs/{run.name}/capacity.nc"
 
 
+def ridge_best(setup):
+    return f"{RESULTS}/tables/{setup}/ridge_best.csv"
+
+
+def targets():
+    return set(workflow.dag_settings.targets or ["figures"])
+
+
+def full():
+    """Whether every run of the authors is asked for, and not only what two cores afford."""
+    return "published_all" in targets()
+
+
+def study_runs(study, setup):
+    """The runs of a study; those that start from the ridge wait for its checkpoint."""
+    best = None
+    if study in FROM_RIDGE and setup == "described":
+        best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
+    return runs(CONFIG, study, setup, best, full())
+
+
 def capacities(study, setup):
-    return [capacity(run) for run in runs(CONFIG, study, setup)]
+    return [capacity(run) for run in study_runs(study, setup)]
+
+
+def responses(study, setup):
+    return [response(run) for run in study_runs(study, setup)]
 
 
 def figure(study, setup):
@@ -52,10 +80,27 @@ def setups_at_hand(study):
     their scenes: after a change of the config the other setup's files are not those asked for, and
     it leaves the table until it is asked for again.
     """
-    targets = set(workflow.dag_settings.targets or ["figures"])
-    asked = {"published"} & targets | ({"described"} if targets - {"published"} else set())
-    scored = {s for s in SETUPS if all(Path(path).exists() for path in capacities(study, s))}
-    return [setup for setup in SETUPS if setup in asked | scored]
+    asked = {"published"} if targets() & PUBLISHED else set()
+    asked |= {"described"} if targets() - PUBLISHED else set()
+    return [s for s in SETUPS if s in STUDY_SETUPS[study] and (s in asked or is_scored(study, s))]
+
+
+def is_scored(study, setup):
+    from_ridge = study in FROM_RIDGE and setup == "described"
+    if from_ridge and not Path(ridge_best(setup)).exists():
+        return False
+    best = read_best(ridge_best(setup)) if from_ridge else None
+    paths = map(capacity, runs(CONFIG, study, setup, best, full()))
+    return all(Path(path).exists() for path in paths)
+
+
+def tables_to_merge():
+    """The tables that some setup has rows for."""
+    return [table for study, tables in TABLES.items() if setups_at_hand(study) for table in tables]
+
+
+def merged():
+    return [f"{RESULTS}/tables/{table}.csv" for table in tables_to_merge()]
 
 
 def tables_at_hand(wildcards):
@@ -73,11 +118,10 @@ try:
     CONFIG = load(config)
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
+    STUDY_SETUPS = {study: [s for s in SETUPS if runs(CONFIG, study, s)] for study in STUDIES}
     if workflow.is_main_process:  # a job on a cluster need not check again
         check_folders(CONFIG)
-        for run in RUNS.values():
-            if not Path(response(run)).exists():
-                run.check()
+        check(run for run in RUNS.values() if not Path(response(run)).exists())
 except ValueError as error:
     sys.exit(str(error))  # this prints the sentence and nothing else
 
