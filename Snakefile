@@ -27,6 +27,12 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
 include: "workflow/rules/topology.smk"
 include: "workflow/rules/studies.smk"
+include: "workflow/rules/noise.smk"
+include: "workflow/rules/robustness.smk"
+include: "workflow/rules/chaos.smk"
+include: "workflow/rules/narma.smk"
+include: "workflow/rules/buckling.smk"
+include: "workflow/rules/features.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/accuracy.smk"
 
@@ -35,6 +41,7 @@ rule figures:
     default_target: True
     input:
         [figure(study, "described") for study in DRAWN],
+        ANIMATIONS,
         lambda wildcards: merged(),
         rules.claims.output,
 

@@ -22,11 +22,11 @@ STEP = 1e-9
 # divisions an element
 PASSES = {
     "kirchhoff": [
-        ("stretch", kirchhoff.stretch_pass, 7, (), 0, 4, 3, 1, 1),
-        ("turn", kirchhoff.turn_pass, 7, (), 0, 5, 2, 0, 1),
-        ("tension", kirchhoff.tension_pass, 7, (0.5,), 0, 5, 2, 0, 1),
-        ("moment", kirchhoff.moment_pass, 14, (), 0, 13, 1, 0, 0),
-        ("force", kirchhoff.force_pass, 8, (), 0, 6, 2, 0, 0),
+        ("stretch", kirchhoff.stretch_pass, 8, (), 0, 5, 4, 0, 0),
+        ("turn", kirchhoff.turn_pass, 7, (), 0, 5, 2, 0, 0),
+        ("tension", kirchhoff.tension_pass, 8, (0.5,), 0, 6, 2, 0, 0),
+        ("moment", kirchhoff.moment_pass, 13, (), 0, 13, 1, 0, 0),
+        ("force", kirchhoff.force_pass, 7, (), 0, 6, 2, 0, 0),
         ("kick and drift x", kirchhoff.kick_pass, 6, (0.99, STEP), 0, 6, 2, 0, 0),
         ("kick and drift y", kirchhoff.kick_pass, 6, (0.99, STEP), 0, 6, 2, 0, 0),
     ],

@@ -15,6 +15,7 @@ import inspect
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 
@@ -117,6 +118,7 @@ class Evidence:
 
 
 CHECKS: dict[str, Callable[[Evidence], Answer]] = {}
+FURTHER = ("ridge", "sweeps", "features")  # fiberweb.claims_<name> holds more rules
 
 
 def check(*ids: str) -> Callable:
@@ -138,6 +140,7 @@ def load() -> list[dict]:
 
 def rules() -> dict[str, str]:
     """The rule of each claim that has one, from its function's docstring."""
+    _register_all()
     return {name: inspect.getdoc(function) for name, function in CHECKS.items()}
 
 
@@ -159,6 +162,7 @@ def evaluate(
         ValueError: a file of the authors' is missing from the folder, or a table holds two
             runs where a claim needs one.
     """
+    _register_all()
     folder = None if published_tables is None else Path(published_tables)
     records = []
     for claim in load():
@@ -169,6 +173,12 @@ def evaluate(
             record |= {setup: text, f"{setup}_verdict": verdict}
         records.append(record)
     return pd.DataFrame(records, columns=list(COLUMNS))
+
+
+def _register_all() -> None:
+    """Import the other modules with rules, at call time because they import this one."""
+    for name in FURTHER:
+        import_module(f"fiberweb.claims_{name}")
 
 
 def _judge(evidence: Evidence) -> tuple[str, str]:
@@ -202,7 +212,7 @@ def nonlinear_capacity_saturates(evidence: Evidence) -> Answer:
     Adds little or nothing: C_nl(10) and C_nl(12) <= C_nl(8) + 0.03."""
     c = evidence.totals("crosshatch", CROSSHATCHES, "c_nl")
     return Answer(
-        f"C_nl {_numbers(c)}", _rises(c[:4]) and all(dense <= c[3] + ALLOWANCE for dense in c[4:])
+        f"C_nl {numbers(c)}", rises(c[:4]) and all(dense <= c[3] + ALLOWANCE for dense in c[4:])
     )
 
 
@@ -227,7 +237,7 @@ def memory_capacity_peaks(evidence: Evidence) -> Answer:
     c = evidence.totals("crosshatch", CROSSHATCHES, "c_m")
     kept = 1 - SUBSTANTIAL
     plateaus = kept * c[3] < c[4] <= c[3] + ALLOWANCE
-    return Answer(f"C_m {_numbers(c)}", _rises(c[:4]) and plateaus and c[5] <= kept * c[4])
+    return Answer(f"C_m {numbers(c)}", rises(c[:4]) and plateaus and c[5] <= kept * c[4])
 
 
 @check("T8")
@@ -241,7 +251,7 @@ def larger_networks_recall_further(evidence: Evidence) -> Answer:
     grows = horizon[3] > horizon[0] and all(allowed[i + 1] >= horizon[i] for i in range(3))
     beyond_smallest = all(dense >= horizon[0] for dense in allowed[4:])
     reach = abs(max(horizon) - PAPERS_REACH) <= REACH_TOLERANCE + ROUND_OFF
-    return Answer(f"horizon {_numbers(horizon)} s", grows and beyond_smallest and reach)
+    return Answer(f"horizon {numbers(horizon)} s", grows and beyond_smallest and reach)
 
 
 @check("T9")
@@ -256,7 +266,7 @@ def polygons_stay_below(evidence: Evidence) -> Answer:
     hexagon_best = polygon["c_nl"][0] >= max(polygon["c_nl"]) - ALLOWANCE
     alike = max(polygon["c_m"]) - min(polygon["c_m"]) <= 2 * ALLOWANCE + ROUND_OFF
     return Answer(
-        f"C_nl {_numbers(polygon['c_nl'])}, C_m {_numbers(polygon['c_m'])}; 2x2 {nl:.2f}, {m:.2f}",
+        f"C_nl {numbers(polygon['c_nl'])}, C_m {numbers(polygon['c_m'])}; 2x2 {nl:.2f}, {m:.2f}",
         below and hexagon_best and alike,
     )
 
@@ -269,7 +279,7 @@ def authors_density_table(evidence: Evidence) -> Answer:
         raise NotComputed
     ours = evidence.table("topology")
     ours = ours[ours["topology"] == "crosshatch"]
-    theirs = _authors_table(
+    theirs = authors_table(
         evidence.published_tables / "density_500mm.csv",
         ("num_threads", "spacing(mm)", "force_mag(N)", "nonlinearity", "memory"),
     )
@@ -287,10 +297,11 @@ def authors_density_table(evidence: Evidence) -> Answer:
         f"C_m {c_m.max():.3f} (N = {both['n'][c_m.idxmax()]}), "
         f"C_nl {c_nl.max():.3f} (N = {both['n'][c_nl.idxmax()]}), of {len(both)} networks"
     )
-    return Answer(text, _inside_range(evidence.claim, c_m.max()))
+    return Answer(text, inside_range(evidence.claim, c_m.max()))
 
 
-def _authors_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
+def authors_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
+    """A table of the authors'; ValueError if it or one of the columns is not there."""
     if not path.is_file():
         raise ValueError(f"{path} does not exist; put the authors' table there or give no folder")
     frame = pd.read_csv(path)
@@ -300,7 +311,7 @@ def _authors_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
     return frame
 
 
-def _rises(c: list[float]) -> bool:
+def rises(c: list[float]) -> bool:
     """No step falls by more than the allowance, and the whole exceeds it."""
     steps = all(after >= before - ALLOWANCE for before, after in pairwise(c))
     return steps and c[-1] > c[0] + ALLOWANCE
@@ -316,7 +327,8 @@ def _within_tolerance(claim: dict, value: float) -> bool:
     return abs(value - claim["paper"]) <= claim["tolerance"] + ROUND_OFF
 
 
-def _inside_range(claim: dict, value: float) -> bool:
+def inside_range(claim: dict, value: float) -> bool:
+    """Whether the value lies in the claim's range, give or take round-off."""
     low, high = claim["range"]
     return low - ROUND_OFF <= value <= high + ROUND_OFF
 
@@ -329,7 +341,8 @@ def _papers_word(claim: dict) -> str:
     return ", ".join(map(str, paper)) if isinstance(paper, list) else str(paper)
 
 
-def _numbers(values: Iterable[float]) -> str:
+def numbers(values: Iterable[float]) -> str:
+    """Two decimals each, for the text of an answer."""
     return " ".join(f"{value:.2f}" for value in values)
 
 

@@ -79,6 +79,29 @@ class Config(Section):
                 f"scene.duration = {self.scene.duration:g} s is too short for the recall horizon "
                 f"of {HORIZON:g} s: record at least {least:g} s, {why}"
             )
+        if self.size.published_duration < 2 * HORIZON:
+            raise ValueError(
+                f"size.published_duration = {self.size.published_duration:g} s is too short for "
+                f"the recall horizon of {HORIZON:g} s: record at least {2 * HORIZON:g} s"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _follows_the_ridge(self) -> Self:
+        spacings = self.ridge.spacing
+        for name in ("published_c_nl_force", "published_c_m_force"):
+            forces = getattr(self.size, name)
+            if len(forces) != len(spacings):
+                raise ValueError(
+                    f"size.{name} lists {len(forces)} forces, but ridge.spacing {len(spacings)} "
+                    "spacings: list one force for each"
+                )
+        for spacing in self.pretension.spacing:
+            if spacing not in spacings:
+                raise ValueError(
+                    f"pretension.spacing holds {spacing:g} m, but ridge.spacing does not: the "
+                    "forces of this study come from the ridge, so use spacings of both"
+                )
         return self
 
 
@@ -130,9 +153,9 @@ def _read(path: str | Path) -> Mapping:
 
 def _overlay(below: Mapping, above: Mapping) -> dict:
     merged = dict(below)
-    for key, value in above.items():
-        both = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
-        merged[key] = _overlay(merged[key], value) if both else value
+    for name, value in above.items():
+        both = isinstance(value, Mapping) and isinstance(merged.get(name), Mapping)
+        merged[name] = _overlay(merged[name], value) if both else value
     return merged
 
 
@@ -160,8 +183,8 @@ def _explain(error: ValidationError) -> str:
 def _look_up(path: list[str]):
     """(Section, None) or (None, field) that a path of keys leads to."""
     section, field = Config, None
-    for key in path:
-        field = section.model_fields[key]
+    for name in path:
+        field = section.model_fields[name]
         section = field.annotation
     is_section = isinstance(section, type) and issubclass(section, Section)
     return (section, None) if is_section else (None, field)

@@ -25,5 +25,5 @@ def sentence(error, where: str = "", known=()) -> str:
         return unknown_key(key, known, "".join(f"{part}." for part in above))
     if problem["type"] == "value_error":
         return problem["msg"].removeprefix("Value error, ")
-    text = problem["msg"]
+    text = "List at least one" if problem["type"] == "too_short" else problem["msg"]
     return f"{'.'.join([*above, key])} = {problem['input']!r}: {text[0].lower()}{text[1:]}"

@@ -19,13 +19,13 @@ AUTHORS_LOAD = {-2: 0.1875, -1: 0.125, 0: 0.125, 1: 0.1875, 2: 0.375}
 
 
 class Readout(NamedTuple):
-    """One point that is read: where it lies, and the two nodes and weights that give it."""
+    """One point that is read: where it lies, and the four nodes and weights that give it."""
 
-    kind: str  # crossing, horizontal_midpoint, vertical_midpoint, section_midpoint
+    kind: str  # crossing, horizontal_midpoint, vertical_midpoint, section_midpoint, node
     fibre: int
-    section: int  # along the fibre: number of the crossing, or of the section
-    nodes: tuple[int, int]
-    weights: tuple[float, float]
+    section: int  # along the fibre: number of the crossing, of the section, or of the node
+    nodes: tuple[int, ...]
+    weights: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -272,29 +272,44 @@ def _load(scene: Scene, lines: list[_Line], first: np.ndarray) -> np.ndarray:
 
 
 def _at(along: np.ndarray, distance: float):
-    """The two nodes about a distance along a fibre, and their weights."""
-    left = int(np.clip(np.searchsorted(along, distance * (1 + 1e-12)) - 1, 0, len(along) - 2))
-    share = (distance - along[left]) / (along[left + 1] - along[left])
-    share = float(np.round(np.clip(share, 0.0, 1.0), 9))
-    return (left, left + 1), (1.0 - share, share)
+    """The nodes about a distance along a fibre, four where there are as many, and the weights of
+    the polynomial through them."""
+    count = min(4, len(along))
+    left = np.searchsorted(along, distance * (1 + 1e-12)) - count // 2
+    left = int(np.clip(left, 0, len(along) - count))
+    near = along[left : left + count]
+    weights = [
+        np.prod([(distance - b) / (a - b) for b in np.delete(near, i)]) for i, a in enumerate(near)
+    ]
+    return tuple(range(left, left + count)), tuple(np.round(weights, 12).tolist())
 
 
 def _readouts(scene: Scene, lines: list[_Line], first: np.ndarray) -> tuple[Readout, ...]:
-    """Crossings (read on their first fibre), then section midpoints, fibre by fibre."""
+    """Crossings (read on their first fibre), then section midpoints, fibre by fibre; then every
+    node of every fibre if the scene asks for centre lines."""
     network = scene.network
     seen, readouts = set(), []
     for fibre, stations in enumerate(network.stations):
         for number, ((crossing, _), node) in enumerate(zip(stations, lines[fibre].crossing_nodes)):
             if crossing not in seen:
                 seen.add(crossing)
-                node = int(first[fibre] + node)
-                readouts.append(Readout("crossing", fibre, number, (node, node), (1.0, 0.0)))
+                readouts.append(_readout("crossing", fibre, number, first[fibre], (node,), (1.0,)))
     for fibre, line in enumerate(lines):
         kind = "section_midpoint"
         if network.topology == "crosshatch":
             kind = "horizontal_midpoint" if fibre < network.n else "vertical_midpoint"
         for section, distance in enumerate(line.section_middles):
             nodes, weights = _at(line.along, distance)
-            nodes = (int(first[fibre] + nodes[0]), int(first[fibre] + nodes[1]))
-            readouts.append(Readout(kind, fibre, section, nodes, weights))
+            readouts.append(_readout(kind, fibre, section, first[fibre], nodes, weights))
+    if scene.centre_lines:
+        for fibre, line in enumerate(lines):
+            for number in range(len(line.points)):
+                readouts.append(_readout("node", fibre, number, first[fibre], (number,), (1.0,)))
     return tuple(readouts)
+
+
+def _readout(kind: str, fibre: int, section: int, first: int, nodes, weights) -> Readout:
+    """A readout by nodes of its fibre, filled up to four of which the last have no weight."""
+    spare = 4 - len(nodes)
+    nodes = tuple(int(first + node) for node in (*nodes, *[nodes[-1]] * spare))
+    return Readout(kind, fibre, section, nodes, (*weights, *[0.0] * spare))

@@ -94,6 +94,7 @@ def runs(
         full: all that the authors ran, in the published setup too.
     """
     general = _given(config.numerics.model_dump()) if setup == "described" else {}
+    best = None if best is None else _of_config(best, config)
     found = {}
     for point in STUDIES[study](config, setup, best, full):
         scoring = {"alpha": config.scoring.alpha}
@@ -119,6 +120,19 @@ def example(found: list[Run]) -> Run:
     """The run whose computations Fig. 1d shows: the 8x8 crosshatch, or the nearest to it."""
     crosshatches = [run for run in found if run.scene.network.topology == "crosshatch"]
     return min(crosshatches or found, key=lambda run: abs(run.scene.network.n - EXAMPLE))
+
+
+def _of_config(best: Best, config: Config) -> Best:
+    """The spacings and forces that a table's stand for, which it rounds to ten digits."""
+
+    def nearest(values, to):
+        return min(values, key=lambda value: abs(value - to))
+
+    ridge = config.ridge
+    return {
+        (choice, nearest(ridge.spacing, spacing)): nearest(ridge.force, force)
+        for (choice, spacing), force in best.items()
+    }
 
 
 def _given(values: dict) -> dict:

@@ -7,6 +7,7 @@ given as `best`; while that is unknown they yield all that it could be.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -15,11 +16,12 @@ from itertools import product
 from fiberweb.buckling import critical_force
 from fiberweb.config import Config
 from fiberweb.network import Network, crosshatch, polygon
-from fiberweb.scene import Scene
+from fiberweb.scene import SETUPS, Scene
 
 # (choice, spacing in m) -> force in N; choice is "best_c_nl" or "best_c_m"
 Best = Mapping[tuple[str, float], float]
 CHOICES = ("best_c_nl", "best_c_m")
+AUTHORS = SETUPS["published", "crosshatch"]
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ def topology(config: Config, setup: str, best: Best | None, full: bool) -> Itera
         yield Point(scene(config, setup, _hatch(n, section.length)), "eq3")
     for n in section.polygon:
         diagonals = getattr(section.diagonals, setup)
-        yield Point(scene(config, setup, polygon(n, section.length, diagonals)), "eq3")
+        yield Point(scene(config, setup, _polygon(n, section.length, diagonals)), "eq3")
 
 
 def ridge(config: Config, setup: str, best: Best | None, full: bool) -> Iterator[Point]:
@@ -90,7 +92,9 @@ def pretension(config: Config, setup: str, best: Best | None, full: bool) -> Ite
     """Every tension at the best force of each spacing (Fig. 3)."""
     section = config.pretension
     if setup == "described":
-        chosen = [(c, s, f) for c, s, f in _chosen(config, section.spacing, best) if c == CHOICES[1]]
+        chosen = [
+            (c, s, f) for c, s, f in _chosen(config, section.spacing, best) if c == CHOICES[1]
+        ]
     else:
         chosen = [("authors", *pair) for pair in zip(section.spacing, section.published_force)]
     for (choice, spacing, force), tension in product(chosen, section.tension):
@@ -106,31 +110,51 @@ def features(config: Config, setup: str, best: Best | None, full: bool) -> Itera
 
 
 def memory_origin(config: Config, setup: str, best: Best | None, full: bool) -> Iterator[Point]:
-    """One thing at a time: crossings, damping of fibres, and the filter over stiff crossings."""
+    """What could carry memory, one at a time: crossings, damping of fibres, the Laplace filter.
+
+    Of the published setup: the authors' networks, with their filter and without it.
+    """
     section = config.memory_origin
-    if setup == "published":
-        return
-    stiff = max(section.crossing_stiffness)
-    pinned = {"crossing_stiffness": stiff, "crossing_damping": 0.0}
     for n in section.n:
         at = _hatch(n, section.length)
-        for k in section.crossing_stiffness:
-            yield Point(scene(config, setup, at, crossing_stiffness=k), "eq3")
-        for nu in section.crossing_damping:
-            yield Point(scene(config, setup, at, crossing_damping=nu), "eq3")
+        if setup == "published":
+            for order in (AUTHORS["filter_order"], 0):
+                yield Point(scene(config, setup, at, filter_order=order), "eq3")
+            continue
+        sweeps = {
+            "crossing_stiffness": section.crossing_stiffness,
+            "crossing_damping": section.crossing_damping,
+            "damping": section.damping,
+        }
+        for name, values in sweeps.items():
+            for value in values:
+                yield Point(scene(config, setup, at, **{name: value}), "eq3")
         for rate in section.damping:
-            yield Point(scene(config, setup, at, damping=rate, **pinned), "eq3")
-        first = True
-        for elements, step in product(section.filter_elements, section.filter_step):
-            numerics = {
-                "engine": "cosserat", "elements_per_section": elements, "time_step": step
-            }  # fmt: skip
-            if first or n == 4:
-                filtered = scene(config, setup, at, filter_order=6, **pinned)
-                yield Point(filtered, "eq3", numerics)
-            if first:
-                yield Point(replace(filtered, filter_order=0), "eq3", numerics)
-            first = False
+            pinned = {"crossing_stiffness": math.inf, "crossing_damping": 0.0, "damping": rate}
+            yield Point(scene(config, setup, at, **pinned), "eq3")
+        yield from _filtered(config, at)
+
+
+def _filtered(config: Config, network: Network) -> Iterator[Point]:
+    """The Laplace filter over the authors' crossings at one mesh and step, and no filter at the
+    same; at one size other meshes and steps too, because the filter's strength is of those."""
+    section = config.memory_origin
+    elements, steps = section.filter_element, section.filter_step
+    meshes = [(elements[0], steps[0])]
+    if network.n == section.filter_n:
+        meshes += [(element, steps[0]) for element in elements[1:]]
+        meshes += [(elements[0], step) for step in steps[1:]]
+    crossings = {key: AUTHORS[key] for key in ("crossing_stiffness", "crossing_damping")}
+    off, on = (
+        scene(config, "described", network, filter_order=order, **crossings)
+        for order in (0, AUTHORS["filter_order"])
+    )
+    for made, (element, step) in [(off, meshes[0]), *((on, mesh) for mesh in meshes)]:
+        per_section = max(1, round(network.spacing / element))
+        numerics = {
+            "engine": "cosserat", "elements_per_section": per_section, "time_step": step
+        }  # fmt: skip
+        yield Point(made, "eq3", numerics)
 
 
 def calibration(config: Config, setup: str, best: Best | None, full: bool) -> Iterator[Point]:
@@ -150,7 +174,10 @@ def noise(config: Config, setup: str, best: Best | None, full: bool) -> Iterator
 
 
 def chaos(config: Config, setup: str, best: Best | None, full: bool) -> Iterator[Point]:
-    """Twins, disturbed and not, over forces about buckling."""
+    """Twins over forces about buckling: the second starts disturbed twice as far as the first.
+
+    Both are disturbed because responses of disturbed scenes alone keep every digit.
+    """
     section = config.chaos
     if setup == "published":
         return
@@ -158,8 +185,8 @@ def chaos(config: Config, setup: str, best: Best | None, full: bool) -> Iterator
     for b in section.buckling:
         force = b * _critical(config, setup, section.spacing)
         one = scene(config, setup, network, force=force)
-        yield Point(one, "buckling")
-        yield Point(replace(one, disturbance=section.disturbance), "buckling")
+        for times in (1, 2):
+            yield Point(replace(one, disturbance=times * section.disturbance), "buckling")
 
 
 def robustness(config: Config, setup: str, best: Best | None, full: bool) -> Iterator[Point]:
@@ -216,8 +243,11 @@ def _chosen(config: Config, spacings, best: Best | None):
         if best is None:
             critical = _critical(config, "described", spacing)
             yield from ((choice, spacing, f) for f in config.ridge.force if f < critical)
-        elif (choice, spacing) in best:
-            yield choice, spacing, best[choice, spacing]
+            continue
+        for (chosen_for, at), force in best.items():
+            if chosen_for == choice and math.isclose(at, spacing, rel_tol=1e-9):
+                # the config's own number: a table keeps ten digits, the name of a run all
+                yield choice, spacing, min(config.ridge.force, key=lambda f: abs(f - force))
 
 
 def _plain(config: Config, setup: str, section) -> Iterator[Point]:
@@ -235,6 +265,11 @@ def _critical(config: Config, setup: str, spacing: float) -> float:
 @cache
 def _hatch(n: int, length: float) -> Network:
     return crosshatch(n, length=length)
+
+
+@cache
+def _polygon(n: int, length: float, diagonals: str) -> Network:
+    return polygon(n, length, diagonals)
 
 
 @cache

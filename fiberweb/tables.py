@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from fiberweb import capacity, dataset
 from fiberweb.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SCALARS = ("c_nl", "c_m", "c_nl_train", "c_m_train", "c_nl_raw", "c_m_raw", "c_nl_se", "c_m_se")
 COLUMNS = (
@@ -42,12 +46,12 @@ def topology(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
     return rows(capacity_paths)
 
 
-def rows(capacity_paths: Iterable[str | Path], **extra: object) -> pd.DataFrame:
-    """One row for each capacity file.
+def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataFrame:
+    """One row for each set of capacities.
 
     Args:
-        capacity_paths: files that hold the output of `capacity.score` with the attrs ``scene``,
-            ``run`` and ``status``.
+        scored: outputs of `capacity.score` with the attrs ``scene``, ``run`` and ``status``, or
+            files that hold them.
         **extra: columns that a study adds after `COLUMNS`: a constant, or a function of the
             run's (Scene, capacity Dataset), such as ``length_m=lambda scene, _:
             scene.network.length``.
@@ -56,7 +60,7 @@ def rows(capacity_paths: Iterable[str | Path], **extra: object) -> pd.DataFrame:
         A frame of `COLUMNS` and the extra ones; spacing in m, forces in N, capacities
         dimensionless and NaN for an unstable run.
     """
-    return _frame([_row(*_read_run(path), extra) for path in capacity_paths], (*COLUMNS, *extra))
+    return _frame([_row(*_read_run(each), extra) for each in scored], (*COLUMNS, *extra))
 
 
 def study(capacity_paths: Sequence[str | Path], choices: Sequence[str]) -> pd.DataFrame:
@@ -182,9 +186,9 @@ def read(path: str | Path) -> pd.DataFrame:
     return pd.read_csv(path)
 
 
-def _read_run(path):
-    """(Scene, capacity Dataset) of one capacity file."""
-    scored = dataset.load(path)
+def _read_run(given):
+    """(Scene, capacity Dataset) of one capacity file or of what it would hold."""
+    scored = dataset.load(given) if isinstance(given, (str, Path)) else given
     return Scene.from_json(scored.attrs["scene"]), scored
 
 

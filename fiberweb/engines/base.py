@@ -51,7 +51,7 @@ def steps_per_sample(scene: Scene, time_step: float) -> int:
 
 
 def readout_arrays(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights of the readouts, both of shape (readouts, 2)."""
+    """Nodes and weights of the readouts, both of shape (readouts, 4)."""
     nodes = np.array([readout.nodes for readout in mesh.readouts], dtype=np.int64)
     return nodes, np.array([readout.weights for readout in mesh.readouts])
 

@@ -28,7 +28,7 @@ def record(x, y, vx, vy, nodes, weights, rest_x, rest_y, half, out):
     for r in range(nodes.shape[0]):
         ux = 0.0
         uy = 0.0
-        for k in range(2):
+        for k in range(nodes.shape[1]):
             i = nodes[r, k]
             ux += weights[r, k] * (x[i] - half * vx[i] - rest_x[i])
             uy += weights[r, k] * (y[i] - half * vy[i] - rest_y[i])

@@ -8,11 +8,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from fiberweb.engines.jit import kernel
-from fiberweb.engines.layout import Layout
+from fiberweb.engines.layout import Layout, Strips
 from fiberweb.mesh import Mesh
 
 
-def joint_operators(mesh: Mesh, layout: Layout, step: float):
+def joint_operators(mesh: Mesh, layout: Layout, strip: Strips, step: float):
     """What a step does to the nodes that meet at a crossing, beyond what it does to all.
 
     With v the velocities before the kick, v* after the kick of all but the crossing, and x the
@@ -38,10 +38,10 @@ def joint_operators(mesh: Mesh, layout: Layout, step: float):
             operators = _pair_operators(
                 mass, -spring[0, 1], -damper[0, 1], step, mesh.scene.damping
             )
-            pairs.append((*nodes, *operators, *(1.0 - mass / mass.sum())))
+            pairs.append((*strip.place[nodes], *operators, *(1.0 - mass / mass.sum())))
         else:
             operators = _group_operators(mass, spring, damper, step, mesh.scene.damping)
-            others.append((nodes, operators))
+            others.append((strip.place[nodes], operators))
     a, b, *rest = (np.array(column) for column in zip(*pairs)) if pairs else [np.zeros(0)] * 7
     integer = np.int64
     return (
@@ -102,41 +102,67 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
 
 
 @kernel
-def pair_pass(pairs, x, v, f_before, f, outer, kick, decay):
-    """Change the velocities of crossings of two nodes such that the kick that follows leaves
-    them as spring and damper would (one direction); `joint_operators` has the step.
-
-    `f_before` at a node is the force in the edge before it, `f` in the one after. The indices
-    are unsigned, since Numba looks for negative ones at every access otherwise.
-    """
-    a_nodes, b_nodes, p, q, s, share_a, share_b = pairs
-    over = 1.0 / decay
+def look_at_pairs(pairs, motion, x, y, vx, vy):
+    """Relative velocity and position of the nodes of each pair, in x and in y."""
+    a_nodes, b_nodes = pairs[:2]
     for j in range(a_nodes.shape[0]):
         a, b = a_nodes[j], b_nodes[j]
-        old = v[b] - v[a]
-        push_b = kick[b] * (f[b] - f_before[b] + outer[b])
-        push_a = kick[a] * (f[a] - f_before[a] + outer[a])
-        kicked = decay * old + (push_b - push_a)
-        change = (p[j] * old + q[j] * kicked + s[j] * (x[b] - x[a]) - kicked) * over
-        v[a] -= share_a[j] * change
-        v[b] += share_b[j] * change
+        motion[0, j], motion[1, j] = vx[b] - vx[a], x[b] - x[a]
+        motion[2, j], motion[3, j] = vy[b] - vy[a], y[b] - y[a]
 
 
 @kernel
-def group_pass(x, v, f, outer, kick, starts, members, offsets, operators, decay, old, kicked):
-    """The same for crossings of any number of nodes, by dense operators."""
-    for g in range(starts.shape[0] - 1):
-        first, count = starts[g], starts[g + 1] - starts[g]
-        p = offsets[g]
-        q, s = p + count * count, p + 2 * count * count
-        for i in range(count):
-            n = members[first + i]
-            old[i] = v[n]
-            kicked[i] = decay * v[n] + kick[n] * (f[n] - f[n - 1] + outer[n])
-        for i in range(count):
-            new = -kicked[i]
-            for j in range(count):
-                k = i * count + j
-                new += operators[p + k] * old[j] + operators[q + k] * kicked[j]
-                new += operators[s + k] * x[members[first + j]]
-            v[members[first + i]] += new / decay
+def pair_pass(pairs, motion, x, y, vx, vy, step):
+    """Change velocities and positions after the kick to what spring and damper make of them at
+    crossings of two nodes; `joint_operators` has the step.
+
+    `motion` has what `look_at_pairs` saw before the kick and is kept up to date. The indices are
+    unsigned, since Numba looks for negative ones at every access otherwise.
+    """
+    a_nodes, b_nodes, p, q, s, share_a, share_b = pairs
+    old_x, gap_x, old_y, gap_y = motion
+    for j in range(a_nodes.shape[0]):
+        a, b = a_nodes[j], b_nodes[j]
+        kicked_x, kicked_y = vx[b] - vx[a], vy[b] - vy[a]
+        new_x = p[j] * old_x[j] + q[j] * kicked_x + s[j] * gap_x[j]
+        new_y = p[j] * old_y[j] + q[j] * kicked_y + s[j] * gap_y[j]
+        old_x[j] = new_x
+        old_y[j] = new_y
+        gap_x[j] += step * new_x
+        gap_y[j] += step * new_y
+        change_x, change_y = new_x - kicked_x, new_y - kicked_y
+        vx[a] -= share_a[j] * change_x
+        vy[a] -= share_a[j] * change_y
+        vx[b] += share_b[j] * change_x
+        vy[b] += share_b[j] * change_y
+        x[a] -= step * share_a[j] * change_x
+        y[a] -= step * share_a[j] * change_y
+        x[b] += step * share_b[j] * change_x
+        y[b] += step * share_b[j] * change_y
+
+
+@kernel
+def look_at_groups(members, before, x, y, vx, vy):
+    """Velocity and position of each member of a group, in x and in y."""
+    for i in range(members.shape[0]):
+        n = members[i]
+        before[0, i], before[1, i] = vx[n], x[n]
+        before[2, i], before[3, i] = vy[n], y[n]
+
+
+@kernel
+def group_pass(members, before, operators, x, v, step):
+    """The same for one crossing of any number of nodes and one direction, by dense operators P, Q
+    and S; `before` has the members' velocities, then positions, before the kick."""
+    count = members.shape[0]
+    kicked = before[0].copy()
+    for i in range(count):
+        kicked[i] = v[members[i]]
+    for i in range(count):
+        new = 0.0
+        for j in range(count):
+            k = i * count + j
+            new += operators[k] * before[0, j] + operators[count * count + k] * kicked[j]
+            new += operators[2 * count * count + k] * before[1, j]
+        v[members[i]] = new
+        x[members[i]] += step * (new - kicked[i])

@@ -118,7 +118,9 @@ def assemble(mesh: Mesh, numerics: Numerics):
     step = 1.0 / (scene.sample_rate * per_sample)
     simulator = Simulator()
     rods = [_rod(mesh, fibre) for fibre in range(len(mesh.first) - 1)]
-    for rod in rods:
+    for fibre, rod in enumerate(rods):
+        moved = mesh.start[mesh.first[fibre] : mesh.first[fibre + 1]]
+        rod.position_collection[:2] += MM * moved.T
         simulator.append(rod)
     for fibre, rod in enumerate(rods):
         _hold(simulator, mesh, fibre, rod)

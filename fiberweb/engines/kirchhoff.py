@@ -9,9 +9,9 @@ them. Stress is PyElastica's, EA (1 - l0 / l). Bending is fourth order in the el
   S^-1 X S^-1 X S^-1 with X = S - A, which couples two neighbours on each side. The zeroth
   order is the usual chain, with moment (EI / S) f(phi), where
 
-      f(phi) = 3 sin(phi) / (2 + cos(phi)) = phi (1 - phi^4 / 180 + ...)
+      f(phi) = sin(phi) (4 - cos(phi)) / 3 = phi (1 - phi^4 / 30 + ...)
 
-  needs one division and no arc tangent and is nowhere stiffer than at phi = 0.
+  needs neither division nor arc tangent and is nowhere stiffer than at phi = 0.
 - A curved element is longer than its chord by b^2 / 24, b the angle it turns through. Without
   this the chord's slope alone carries the axial force and the critical load is wrong at second
   order, whatever the bending term: that is why statics ask for another constant than waves.
@@ -51,9 +51,16 @@ from fiberweb.engines.books import (
     record,
     squared_speed,
 )
-from fiberweb.engines.crossings import group_pass, joint_operators, pair_pass
+from fiberweb.engines.crossings import (
+    group_pass,
+    joint_operators,
+    look_at_groups,
+    look_at_pairs,
+    pair_pass,
+)
 from fiberweb.engines.jit import kernel
 from fiberweb.engines.kirchhoff_passes import (
+    edge_views,
     force_pass,
     kick_pass,
     moment_pass,
@@ -62,7 +69,7 @@ from fiberweb.engines.kirchhoff_passes import (
     tension_pass,
     turn_pass,
 )
-from fiberweb.engines.layout import Layout, lay_out
+from fiberweb.engines.layout import Layout, Strips, lay_out, packed, strips
 from fiberweb.mesh import Mesh
 
 GAP = 2  # ghosts between fibres: the moment reaches two nodes beyond its own
@@ -99,23 +106,26 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
     per_sample = steps_per_sample(scene, numerics.time_step)
     step = 1.0 / (scene.sample_rate * per_sample)
     nodes, weights = readout_arrays(mesh)
-    size = len(layout.x)
-    x, y = layout.x.copy(), layout.y.copy()
-    x[layout.at] += mesh.start[:, 0]
-    y[layout.at] += mesh.start[:, 1]
-    state = (x, y, np.zeros(size), np.zeros(size))
-    decay, chain = coefficients(mesh, layout, step, order)
-    joints = joint_operators(mesh, layout, step)
-    work = tuple(np.zeros(size) for _ in range(12))
-    books = (np.zeros(2), layout.mass, scene.damping, layout.joints, mesh.joint_stiffness,
+    strip = strips(mesh, layout, GAP)
+    rest_x, rest_y, mass = packed(*(a[strip.nodes] for a in (layout.x, layout.y, layout.mass)))
+    still = np.zeros(len(strip.nodes))
+    state = packed(rest_x, rest_y, still, still)
+    state[0][strip.place[layout.at]] += mesh.start[:, 0]
+    state[1][strip.place[layout.at]] += mesh.start[:, 1]
+    decay, chain = coefficients(mesh, layout, strip, step, order)
+    joints = joint_operators(mesh, layout, strip, step)
+    work = packed(*[still] * 10)
+    edge_x, edge_y = (a[strip.stride :] - a[: -strip.stride] for a in state[:2])
+    work[2][strip.stride :] = 1.0 / np.hypot(edge_x, edge_y)
+    books = (np.zeros(2), mass, scene.damping, strip.place[layout.joints], mesh.joint_stiffness,
              mesh.joint_damping)  # fmt: skip
     scalars = (scene.drive_rate, scene.tension_ramp, step, RUNAWAY * scene.wave_speed, decay)
-    readouts = (layout.at[nodes], weights, layout.x, layout.y)
+    readouts = (strip.place[layout.at[nodes]], weights, rest_x, rest_y)
 
     def advance_to(first, displacement, energy):
         return advance(
-            state, work, chain, joints, mesh.drive, readouts, books, scalars, per_sample, first,
-            displacement, energy,
+            state, work, chain, joints, mesh.drive, readouts, books, scalars, strip.stride,
+            per_sample, first, displacement, energy,
         )  # fmt: skip
 
     return record_in_chunks(scene, len(nodes), advance_to)
@@ -138,19 +148,25 @@ def fourth_order_layout(mesh: Mesh) -> Layout:
     return replace(layout, mass=mass)
 
 
-def coefficients(mesh: Mesh, layout: Layout, step: float, order: int):
+def coefficients(mesh: Mesh, layout: Layout, strip: Strips, step: float, order: int):
     """Decay of a free velocity over a step, and what the kernel multiplies with."""
     half = np.exp(-0.5 * mesh.scene.damping * step)
     stiffness = mesh.scene.bending_stiffness
-    loaded = np.flatnonzero(layout.load_x**2 + layout.load_y**2)
+    load_x, load_y = layout.load_x[strip.nodes], layout.load_y[strip.nodes]
+    loaded = np.flatnonzero(load_x**2 + load_y**2)
     matrix = diags_array(layout.span * layout.bends) + (order == 4) * spline_matrix(layout)
     bands = [np.r_[(stiffness * matrix).diagonal(k), np.zeros(k)] for k in range(3)]
-    chain = (
-        mesh.scene.axial_stiffness * layout.solid, layout.edge, layout.bends / layout.span, *bands,
-        half * step * layout.free_x / layout.mass, half * step * layout.free_y / layout.mass,
-        layout.pull_x, layout.pull_y, loaded, layout.load_x[loaded], layout.load_y[loaded],
-        0.5 if order == 4 else 0.0,
+    over_edges = mesh.scene.axial_stiffness * layout.solid, layout.edge
+    over_nodes = (
+        layout.bends / layout.span, *bands, half * step * layout.free_x / layout.mass,
+        half * step * layout.free_y / layout.mass, layout.pull_x, layout.pull_y,
     )  # fmt: skip
+    chain = (
+        *packed(*(a[strip.edges] for a in over_edges), *(a[strip.nodes] for a in over_nodes)),
+        loaded, load_x[loaded], load_y[loaded], 0.5 if order == 4 else 0.0,
+    )  # fmt: skip
+    if np.array_equal(chain[6], chain[7]):  # the same kick in x and in y: one array less to load
+        chain = (*chain[:7], chain[6], *chain[8:])
     return half * half, chain
 
 
@@ -175,44 +191,47 @@ def spline_matrix(layout: Layout) -> csr_array:
 
 
 @kernel
-def pass_views(state, work, chain):
+def pass_views(state, work, chain, s):
     """The shifted parts of the arrays that each pass runs over, in the order of its arguments.
 
     Made once a call: within the loop over steps they would cost as much as a pass.
     """
     x, y, vx, vy = state
-    tx, ty, inverse, tension, bowing = (
-        work[0][1:], work[1][1:], work[2][1:], work[3][1:], work[4][1:],
-    )  # fmt: skip
-    fx, fy, moment, k, slope, outer_x, outer_y = work[5][1:], work[6][1:], *work[7:]
+    tx, ty, inverse, fy, fx, bowing = edge_views(work, s)
+    k, moment, outer_x, outer_y = work[6:]
     axial, edge, over_span, c, c_up, c_up2, kick_x, kick_y = chain[:8]
+    n = x.shape[0]
+    inner, two = slice(s, n - s), slice(2 * s, n - 2 * s)
     return (
-        (x[:-1], x[1:], y[:-1], y[1:], tx, ty, inverse),
-        (tx[:-1], tx[1:], ty[:-1], ty[1:], over_span[1:-1], k[1:-1], slope[1:-1]),
-        (k[:-1], k[1:], inverse, axial, edge, tension, bowing),
-        (moment[2:-2], slope[2:-2], c[2:-2], c_up[2:-2], c_up2[2:-2], c_up[1:-3], c_up2[:-4],
-         k[2:-2], k[3:-1], k[4:], k[1:-3], k[:-4], bowing[1:-2], bowing[2:-1]),
-        (tx, ty, inverse, tension, moment[:-1], moment[1:], fx, fy),
-        (x[1:-1], vx[1:-1], fx[:-1], fx[1:], outer_x[1:-1], kick_x[1:-1]),
-        (y[1:-1], vy[1:-1], fy[:-1], fy[1:], outer_y[1:-1], kick_y[1:-1]),
+        (x[:-s], x[s:], y[:-s], y[s:], tx, ty, inverse, fy),
+        (tx[:-s], tx[s:], ty[:-s], ty[s:], over_span[inner], k[inner], moment[inner]),
+        (k[:-s], k[s:], inverse, fy, axial, edge, fx, bowing),
+        (moment[two], c[two], c_up[two], c_up2[two], c_up[s : n - 3 * s],
+         c_up2[: n - 4 * s], k[two], k[3 * s : n - s], k[4 * s :], k[s : n - 3 * s],
+         k[: n - 4 * s], bowing[s : n - 3 * s], bowing[2 * s : n - 2 * s]),
+        (tx, ty, inverse, moment[:-s], moment[s:], fx, fy),
+        (x[inner], vx[inner], fx[:-s], fx[s:], outer_x[inner], kick_x[inner]),
+        (y[inner], vy[inner], fy[:-s], fy[s:], outer_y[inner], kick_y[inner]),
     )  # fmt: skip
 
 
 @kernel
 def advance(
-    state, work, chain, joints, drive, readouts, books, scalars, per_sample, first, out, energy
-):
+    state, work, chain, joints, drive, readouts, books, scalars, stride, per_sample, first, out,
+    energy,
+):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Args:
         state: x, y (m; half a step ahead of the time) and vx, vy (m/s), each (n,).
-        work: scratch, 12 arrays of (n,).
+        work: scratch, 10 arrays of (n,); the third starts with the inverse lengths of edges.
         chain, joints: see `coefficients` and `joint_operators`.
         drive: spline coefficients, (intervals, 4).
-        readouts: nodes, weights (readouts, 2), rest x, rest y (n,).
+        readouts: nodes, weights (readouts, 4), rest x, rest y (n,).
         books: work done and dissipated so far (2,), mass (n,), damping rate, joints, their
             stiffness and damping.
         scalars: drive rate, tension ramp, step, velocity limit, decay per step.
+        stride: how far apart neighbours are, see `Strips`.
         per_sample: steps between samples.
         first: number of the first sample of `out`.
         out: displacement, (samples, readouts, 2), filled.
@@ -222,22 +241,24 @@ def advance(
         How many samples were recorded before the run became unstable.
     """
     x, y, vx, vy = state
-    kick_x, kick_y, pull_x, pull_y, loaded, load_x, load_y, half = chain[6:]
+    pull_x, pull_y, loaded, load_x, load_y, half = chain[8:]
     pairs, (starts, members, offsets, operators) = joints[:7], joints[7:]
+    motion = np.zeros((4, pairs[0].shape[0]))
+    before = np.zeros((4, members.shape[0]))
     nodes, weights, rest_x, rest_y = readouts
     done, mass, damping, ties, tie_stiffness, tie_damping = books
     drive_rate, ramp_time, step, limit, decay = scalars
     n = x.shape[0]
-    fx_before, fy_before, outer_x, outer_y = work[5], work[6], work[10], work[11]
-    fx, fy = fx_before[1:], fy_before[1:]
-    stretch, turn, tightness, bending, force, x_kick, y_kick = pass_views(state, work, chain)
-    old, kicked = np.zeros(members.shape[0]), np.zeros(members.shape[0])
+    outer_x, outer_y = work[8], work[9]
+    stretch, turn, tightness, bending, force, x_kick, y_kick = pass_views(
+        state, work, chain, stride
+    )
     every = max(1, int(BOOKING / step))
     for sample in range(out.shape[0]):
         record(x, y, vx, vy, nodes, weights, rest_x, rest_y, 0.5 * step, out[sample])
         here_x, here_y = x - 0.5 * step * vx, y - 0.5 * step * vy
         energy[sample, 0] = 0.5 * squared_speed(vx, vy, mass)
-        energy[sample, 1] = strain_energy(here_x, here_y, chain, work)
+        energy[sample, 1] = strain_energy(here_x, here_y, chain, work, stride)
         energy[sample, 1] += joint_energy(here_x, here_y, ties, tie_stiffness)
         pulled = outer_work(here_x - rest_x, here_y - rest_y, pull_x, pull_y)
         start = (first + sample) * per_sample
@@ -253,6 +274,7 @@ def advance(
             outer_x[i] = held * pull_x[i]
             outer_y[i] = held * pull_y[i]
         done[0] += (ramp - held) * pulled
+        look_at_pairs(pairs, motion, x, y, vx, vy)
         for k in range(start, start + per_sample):
             u = drive_value(drive, drive_rate, (k + 0.5) * step)
             for i in range(loaded.shape[0]):
@@ -265,19 +287,14 @@ def advance(
             tension_pass(*tightness, half)
             moment_pass(*bending)
             force_pass(*force)
-            pair_pass(pairs, x, vx, fx_before, fx, outer_x, kick_x, decay)
-            pair_pass(pairs, y, vy, fy_before, fy, outer_y, kick_y, decay)
-            if starts.shape[0] > 1:
-                group_pass(
-                    x, vx, fx, outer_x, kick_x, starts, members, offsets, operators, decay, old,
-                    kicked,
-                )  # fmt: skip
-                group_pass(
-                    y, vy, fy, outer_y, kick_y, starts, members, offsets, operators, decay, old,
-                    kicked,
-                )  # fmt: skip
+            look_at_groups(members, before, x, y, vx, vy)
             kick_pass(*x_kick, decay, step)
             kick_pass(*y_kick, decay, step)
+            pair_pass(pairs, motion, x, y, vx, vy, step)
+            for g in range(starts.shape[0] - 1):
+                part = slice(starts[g], starts[g + 1])
+                group_pass(members[part], before[:2, part], operators[offsets[g] :], x, vx, step)
+                group_pass(members[part], before[2:, part], operators[offsets[g] :], y, vy, step)
             for i in range(loaded.shape[0]):
                 m = loaded[i]
                 done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])

@@ -2,11 +2,11 @@
 
 Ghost nodes stand before each fibre and after the last, so that one loop runs over
 everything: the edges next to a ghost have no stiffness and ghosts do not move. The ghost
-next to a fibre lies one element behind its near end, so that a clamp is an ordinary bending
+before a fibre lies one element behind its near end, so that a clamp is an ordinary bending
 node: the moment there grows with the angle between ghost edge and first edge over half an
 element, which is the half cell that a curvature at the wall spans. Second order, where
 holding the first element's direction is first order (it shortens the fibre by half an
-element).
+element). The other ghosts are so far away that no far end ever meets one.
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fiberweb.mesh import Mesh
+
+LINE = 8  # doubles in a cache line
+_AWAY = 1000  # elements
 
 
 @dataclass(frozen=True)
@@ -55,8 +58,8 @@ class Layout:
     joints: np.ndarray
 
 
-def lay_out(mesh: Mesh, gap: int = 1) -> Layout:
-    """Pad a mesh with `gap` ghosts between fibres."""
+def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
+    """Pad a mesh with `gap` ghosts, two or more, between fibres."""
     fibres = len(mesh.first) - 1
     size = len(mesh.position) + gap * (fibres + 1)
     number = np.repeat(np.arange(fibres), np.diff(mesh.first))
@@ -76,12 +79,10 @@ def lay_out(mesh: Mesh, gap: int = 1) -> Layout:
         span[near + 1 : far] = voronoi[near + 1 : far]
         if mesh.clamped[fibre]:
             bends[near], span[near] = 1.0, 0.5 * lengths[0]
-        back = np.arange(1, gap + 1)[:, None] * (position[near] - position[near + 1])
-        position[near - back.shape[0] : near] = (position[near] + back)[::-1]
-    end = at[-1]
-    position[end + 1 :] = position[end] + np.arange(1, gap + 1)[:, None] * (
-        position[end] - position[end - 1]
-    )
+        back = position[near] - position[near + 1]
+        position[near - gap : near] = position[near] + _AWAY * np.arange(gap, 0, -1)[:, None] * back
+        position[near - 1] = position[near] + back
+    position[at[-1] + 1 :] = position[: at[0]]
     mass = _pad(at, size, mesh.masses(), fill=1.0)
     free = ~mesh.held
     return Layout(
@@ -102,6 +103,53 @@ def lay_out(mesh: Mesh, gap: int = 1) -> Layout:
         load_y=_pad(at, size, mesh.load[:, 1]),
         joints=at[mesh.joints].reshape(-1, 2),
     )
+
+
+@dataclass(frozen=True)
+class Strips:
+    """How the kernels store the chain: fibre by fibre, or node by node.
+
+    Fibres of as many nodes each lie side by side: node j of all of them, then node j + 1. What
+    stands `stride` further is the next node, so a loop over all reads neighbours in whole cache
+    lines. Other networks stay a chain, with a stride of 1.
+
+    Attributes:
+        stride: how far apart neighbours are.
+        nodes: padded index in the chain of each node here, shape (n',).
+        edges: the same of the edges, edge i lying between nodes i and i + stride.
+        place: index here of each node of the chain, shape (n,); of a ghost, of one copy.
+    """
+
+    stride: int
+    nodes: np.ndarray
+    edges: np.ndarray
+    place: np.ndarray
+
+
+def strips(mesh: Mesh, layout: Layout, gap: int) -> Strips:
+    """The order in which the kernels take the nodes of a layout with `gap` ghosts."""
+    counts = np.diff(mesh.first)
+    stride = len(counts) if (counts == counts[0]).all() else 1
+    if stride == 1:
+        nodes = np.arange(len(layout.x))
+    else:
+        rows = np.arange(counts[0] + 2 * gap)[:, None]
+        nodes = (rows - gap + layout.at[mesh.first[:-1]]).ravel()
+    place = np.zeros(len(layout.x), dtype=np.int64)
+    place[nodes] = np.arange(len(nodes))
+    return Strips(stride, nodes, nodes[:-stride], place)
+
+
+def packed(*arrays: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Copies in one block of memory, each at the start of a cache line."""
+    sizes = [-(-array.size // LINE) * LINE + LINE for array in arrays]
+    block = np.zeros(sum(sizes) + LINE)
+    first = -block.ctypes.data % (8 * LINE) // 8
+    starts = first + np.cumsum([0, *sizes[:-1]])
+    views = tuple(block[start : start + array.size] for start, array in zip(starts, arrays))
+    for view, array in zip(views, arrays):
+        view[:] = array
+    return views
 
 
 def _pad(at: np.ndarray, size: int, values: np.ndarray, fill: float = 0.0) -> np.ndarray:

@@ -53,7 +53,7 @@ def side_by_side(*meshes: Mesh) -> Mesh:
     offset = np.cumsum([0] + [len(mesh.position) for mesh in meshes])
     together = {
         name: np.concatenate([getattr(mesh, name) for mesh in meshes])
-        for name in ("position", "held", "clamped", "pull", "load")
+        for name in ("position", "held", "clamped", "pull", "load", "start")
     }
     together["first"] = np.r_[0, np.concatenate([m.first[1:] + o for m, o in zip(meshes, offset)])]
     mesh = replace(meshes[0], **together)

@@ -38,7 +38,7 @@ def kirchhoff_energy(nodes, rest, scene: Scene, clamped: bool, order: int = 4):
     a, b = tangents[..., :-1, :], tangents[..., 1:, :]
     sine = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     cosine = (a * b).sum(-1)
-    curvature = 3 * sine / (2 + cosine) / span  # at the wall, if any, and at the inner nodes
+    curvature = sine * (4 - cosine) / 3 / span  # at the wall, if any, and at the inner nodes
     form = np.diag(span)
     bow = 0.0
     if order == 4:

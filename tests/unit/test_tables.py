@@ -24,6 +24,9 @@ def response(scene, status="ok"):
             "setup": scene.setup,
             "sample_rate": scene.sample_rate,
             "scene": scene.to_json(),
+            "engine": "none",
+            "elements_per_section": 4,
+            "time_step": 1e-5,
         },
     )
 
@@ -139,3 +142,60 @@ def test_merge_joins_tables_of_one_kind_only(study, tmp_path):
         tables.merge([tmp_path / "described.csv", tmp_path / "curves.csv"])
     with pytest.raises(ValueError, match="no table to merge"):
         tables.merge([])
+
+
+def test_study_has_a_row_for_each_run_and_choice(study):
+    (path, scored), unstable = study[1], study[2][0]
+    table = tables.study([path, unstable, path], ["best_c_nl", "eq3", "best_c_m"])
+    assert list(table.columns) == [
+        *tables.COLUMNS, "force_choice", *tables.PHYSICS, *tables.NUMERICS
+    ]  # fmt: skip
+    assert list(zip(table["n"], table["force_choice"])) == [
+        (2, "eq3"), (4, "best_c_nl"), (4, "best_c_m")
+    ]  # fmt: skip
+    row, scene = table.iloc[1], Scene.from_json(scored.attrs["scene"])
+    assert row["c_nl"] == float(scored["c_nl"])
+    assert (row["crossing_stiffness_N_m"], row["seed"]) == (scene.crossing_stiffness, scene.seed)
+    assert (row["duration_s"], row["filter_order"]) == (8.0, 0)
+    assert (row["engine"], row["elements_per_section"], row["time_step_s"]) == ("none", 4, 1e-5)
+    with pytest.raises(ValueError):
+        tables.study([path], ["eq3", "best_c_m"])
+
+
+def made_up_ridge():
+    """Two spacings over three forces: buckled and unstable runs would be the best by far."""
+    rows = [
+        (0.04, 0.5, 0.3, 0.60, 0.20, "ok"),
+        (0.04, 0.8, 0.6, 0.70, 0.15, "ok"),
+        (0.04, 2.0, 1.1, 0.95, 0.90, "ok"),
+        (0.08, 0.1, 0.2, 0.50, 0.30, "ok"),
+        (0.08, 0.2, 0.5, np.nan, np.nan, "unstable"),
+        (0.12, 0.1, 0.5, np.nan, np.nan, "unstable"),
+        (0.12, 0.2, 1.0, 0.70, 0.40, "ok"),
+    ]
+    columns = ["spacing_m", "force_N", "buckling_number", "c_nl", "c_m", "status"]
+    return pd.DataFrame(rows, columns=columns).assign(setup="described")
+
+
+def test_the_best_force_is_below_buckling_and_stable():
+    best = tables.best_unbuckled(made_up_ridge())
+    assert list(best.columns) == list(tables.BEST_COLUMNS)
+    assert best[["spacing_m", "choice", "force_N", "capacity"]].to_numpy().tolist() == [
+        [0.04, "best_c_m", 0.5, 0.20],
+        [0.04, "best_c_nl", 0.8, 0.70],
+        [0.08, "best_c_nl", 0.1, 0.50],
+        [0.08, "best_c_m", 0.1, 0.30],
+    ]
+    buckled = made_up_ridge().assign(buckling_number=2.0)
+    assert list(tables.best_unbuckled(buckled).columns) == list(tables.BEST_COLUMNS)
+    assert tables.best_unbuckled(buckled).empty
+
+
+def test_the_best_forces_come_back_from_their_file(tmp_path):
+    tables.write(tables.best_unbuckled(made_up_ridge()), tmp_path / "best.csv")
+    assert tables.read_best(tmp_path / "best.csv") == {
+        ("best_c_m", 0.04): 0.5,
+        ("best_c_nl", 0.04): 0.8,
+        ("best_c_nl", 0.08): 0.1,
+        ("best_c_m", 0.08): 0.1,
+    }

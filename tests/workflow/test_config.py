@@ -4,6 +4,7 @@ import inspect
 import os
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from fiberweb import capacity, schema
 from fiberweb.config import HORIZON, NumericsSection, check_folders, load
 from fiberweb.engines.choose import ACCURACIES, ENGINES
 from fiberweb.runs import SETUPS, STUDIES, example, run_table, runs
+from fiberweb.studies import CHOICES
 
 ROOT = Path(__file__).parents[2]
 PAPER = ROOT / "config" / "config.yaml"
@@ -46,6 +48,25 @@ BAD = {
     "no such ends": (
         {"setups": {"described": {"ends": "free"}}}, ["setups.described.ends", "'free'"],
     ),
+    "negative force": ({"ridge": {"force": [-1.0]}}, ["ridge.force.0", "-1.0", "0 ", "N)"]),
+    "no spacing": ({"ridge": {"spacing": []}}, ["ridge.spacing = []", "at least one", "m)"]),
+    "more than all": ({"features": {"share": 2}}, ["features.share", "= 2", "less than 1"]),
+    "a force short": (
+        {"size": {"published_c_nl_force": [0.4]}},
+        ["size.published_c_nl_force", "1 force", "ridge.spacing 14", "for each"],
+    ),
+    "a force too many": (
+        {"pretension": {"spacing": [0.05], "published_force": [0.4, 0.4]}},
+        ["pretension.published_force", "[0.4, 0.4]", "pretension.spacing"],
+    ),
+    "not on the ridge": (
+        {"pretension": {"spacing": [0.055], "published_force": [0.4]}},
+        ["pretension.spacing", "0.055 m", "ridge.spacing"],
+    ),
+    "published runs too short to score": (
+        {"size": {"published_duration": 1.0}}, ["size.published_duration", "1 s", "2 s"],
+    ),
+    "no such order": ({"narma": {"order": [3]}}, ["narma.order.0", "= 3", "2, 5 or 10"]),
     "not a number": ({"scene": {"density": float("nan")}}, ["scene.density", "nan", "finite"]),
 }  # fmt: skip
 
@@ -148,6 +169,20 @@ def test_smoke_is_a_small_overlay():
     assert smoke.results != paper.results
     assert smoke.scene.duration < 10
     assert set(smoke.topology.crosshatch) <= set(paper.topology.crosshatch)
+    assert all(runs(smoke, study, "described") for study in STUDIES)
+
+
+def best_of(config):
+    """What the ridge could find: the same for both choices, the least force of the grid."""
+    return dict.fromkeys(product(CHOICES, config.ridge.spacing), min(config.ridge.force))
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+def test_smoke_has_few_runs(setup):
+    config = load(PAPER, SMOKE)
+    best = best_of(config)
+    names = {run.name for study in STUDIES for run in runs(config, study, setup, best)}
+    assert len(names) <= 32  # some four seconds each, two at a time
 
 
 def test_names_of_runs_are_stable():
@@ -155,14 +190,82 @@ def test_names_of_runs_are_stable():
     crossings = {"crossing_stiffness": 50.0, "crossing_damping": 1.0}
     config = load({"setups": {"described": crossings | {"damping": 10.0}}})
     assert [runs(config, "topology", setup)[1].name for setup in SETUPS] == [
-        "crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-428720",
-        "crosshatch-n04-s100.0mm-f50.0mN-t10.0mN-published-51b305",
+        "crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-d9007a",
+        "crosshatch-n04-s100.0mm-f50.0mN-t10.0mN-published-0361b9",
     ]
 
 
 def test_the_paper_has_ten_networks_in_each_setup():
-    names = list(run_table(load()))
-    assert (len(names), sum("published" in name for name in names)) == (20, 10)
+    for setup in SETUPS:
+        names = {run.name for run in runs(load(), "topology", setup)}
+        assert len(names) == 10
+        assert all(("published" in name) == (setup == "published") for name in names)
+
+
+def test_published_in_full_is_what_the_authors_ran():
+    """The paper's grids: 14 spacings x 18 forces; 14 spacings x 6 sizes at two forces, which
+    agree at 5 spacings; 6 spacings x 6 tensions, the least of which is the ridge's."""
+    config = load(PAPER)
+    found = {
+        study: runs(config, study, "published", full=True)
+        for study in ("topology", "ridge", "size", "pretension", "features")
+    }
+    at_our_step = {run.name for run in found["size"] if run.numerics}
+    names = {study: {run.name for run in of} - at_our_step for study, of in found.items()}
+    counts = {"topology": 10, "ridge": 14 * 18, "size": (2 * 14 - 5) * 6, "pretension": 36}
+    assert {study: len(of) for study, of in names.items()} == counts | {"features": 3}
+    assert len(names["ridge"] & names["pretension"]) == 6
+    assert len(set.union(*names.values())) == 433
+    assert len(at_our_step) == 2 * 14 - 5
+    assert {run.scene.duration for run in found["size"]} == {50.0}
+
+
+def test_published_takes_the_forces_about_buckling():
+    config = load({"ridge": {"published_forces": 4}})
+    for spacing in config.ridge.spacing:
+        numbers = [
+            run.scene.buckling_number
+            for run in runs(config, "ridge", "published")
+            if run.scene.network.spacing == pytest.approx(spacing)
+        ]
+        assert sum(b < 1 for b in numbers) <= 2 and sum(b >= 1 for b in numbers) <= 2
+        assert len(numbers) == 4 or spacing == 0.02  # of which one force alone is above
+
+
+def test_size_and_pretension_start_from_what_the_ridge_found():
+    config = load()
+    best = best_of(config) | {("best_c_m", 0.05): 0.4}
+    size = runs(config, "size", "described", best)
+    assert len(size) == 2 * 14 * 6
+    chosen = {
+        (run.choice, run.scene.network.spacing, run.scene.force)
+        for run in runs(config, "pretension", "described", best)
+    }
+    least = min(config.ridge.force)
+    assert chosen == {
+        ("best_c_m", s, 0.4 if s == 0.05 else least) for s in config.pretension.spacing
+    }
+
+
+def test_a_spacing_without_a_stable_run_is_left_out():
+    config = load()
+    size = runs(config, "size", "described", {("best_c_m", 0.05): 0.4})
+    assert {run.choice for run in size} == {"best_c_m"}
+    assert {round(run.scene.network.spacing, 9) for run in size} == {0.05}
+
+
+def test_what_the_ridge_found_are_the_configs_own_values():
+    """A table holds ten digits, and a run's name depends on all of them."""
+    spacing, force = 1 / 30, 1 / 7
+    config = load({
+        "ridge": {"spacing": [spacing], "force": [force, 0.1]},
+        "size": {"published_c_nl_force": [0.4], "published_c_m_force": [0.4]},
+        "pretension": {"spacing": [spacing], "published_force": [0.4]},
+    })  # fmt: skip
+    best = {("best_c_m", float(f"{spacing:.10g}")): float(f"{force:.10g}")}
+    ridge = {run.name for run in runs(config, "ridge", "described")}
+    size = [run for run in runs(config, "size", "described", best) if run.scene.network.n == 4]
+    assert [run.name in ridge for run in size] == [True]
 
 
 def test_a_name_depends_on_scene_and_numerics_only():
@@ -192,12 +295,13 @@ def test_setups_differ_as_the_config_says():
 
 
 def test_studies_share_a_scene_they_both_ask_for(monkeypatch):
-    def again(config, setup):
-        yield from list(STUDIES["topology"](config, setup))[:2]
+    def again(*about):
+        yield from list(STUDIES["topology"](*about))[:2]
 
-    monkeypatch.setitem(STUDIES, "again", again)
     config = load()
-    assert len(run_table(config)) == 20
+    before = list(run_table(config))
+    monkeypatch.setitem(STUDIES, "again", again)
+    assert list(run_table(config)) == before
     assert runs(config, "again", "described") == runs(config, "topology", "described")[:2]
 
 

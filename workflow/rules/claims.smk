@@ -24,7 +24,7 @@ rule merge:
 
 rule claims:
     input:
-        code=code("claims.py", "claims.yaml", "tables.py"),
+        code=code("buckling.py", "claims*.py", "claims.yaml", "tables.py"),
         tables=lambda wildcards: merged(),
         published=authors_tables(),
     output:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from fiberweb.config import check_folders, load
 from fiberweb.runs import SETUPS, STUDIES, check, example, run_table, runs
-from fiberweb.tables import read_best
 
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
 PUBLISHED = {"published", "published_all"}
@@ -26,6 +25,13 @@ def ridge_best(setup):
     return f"{RESULTS}/tables/{setup}/ridge_best.csv"
 
 
+def best_forces(path):
+    """What the ridge's checkpoint found, for `runs`."""
+    from fiberweb.tables import read_best  # with xarray and SciPy, a second few calls need to spend
+
+    return read_best(path)
+
+
 def targets():
     return set(workflow.dag_settings.targets or ["figures"])
 
@@ -39,7 +45,7 @@ def study_runs(study, setup):
     """The runs of a study; those that start from the ridge wait for its checkpoint."""
     best = None
     if study in FROM_RIDGE and setup == "described":
-        best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
+        best = best_forces(checkpoints.ridge_best.get(setup=setup).output[0])
     return runs(CONFIG, study, setup, best, full())
 
 
@@ -49,6 +55,19 @@ def capacities(study, setup):
 
 def responses(study, setup):
     return [response(run) for run in study_runs(study, setup)]
+
+
+def first_seed(setup):
+    """The runs of the first seed of the config's list, one of each size."""
+    seed = CONFIG.robustness.seed[0]
+    return [run for run in study_runs("robustness", setup) if run.scene.seed == seed]
+
+
+def verdict_response(setup):
+    """The response whose signals are chosen one by one: the run by which claims are judged."""
+    force = CONFIG.features.verdict_force
+    found = [run for run in study_runs("features", setup) if run.scene.force == force]
+    return response(found[0])
 
 
 def figure(study, setup):
@@ -86,10 +105,11 @@ def setups_at_hand(study):
 
 
 def is_scored(study, setup):
-    from_ridge = study in FROM_RIDGE and setup == "described"
-    if from_ridge and not Path(ridge_best(setup)).exists():
-        return False
-    best = read_best(ridge_best(setup)) if from_ridge else None
+    best = None
+    if study in FROM_RIDGE and setup == "described":
+        if not (Path(ridge_best(setup)).exists() and is_scored("ridge", setup)):
+            return False
+        best = best_forces(ridge_best(setup))
     paths = map(capacity, runs(CONFIG, study, setup, best, full()))
     return all(Path(path).exists() for path in paths)
 
@@ -133,6 +153,6 @@ pathvars:
 
 
 wildcard_constraints:
-    run="|".join(RUNS),
+    run="[^/]+",  # not every name: there are thousands, and each rule compiles the pattern
     setup="|".join(SETUPS),
     suffix="|".join(SUFFIXES.values()),

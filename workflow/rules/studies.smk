@@ -1,22 +1,27 @@
 # What most studies have in common: a table out of the capacities of their runs, a figure out of
 # their tables, and the checkpoint that finds the best force of each spacing.
 
-SCORED = ("ridge", "size", "pretension", "memory_origin", "calibration", "chaos", "robustness")
+SCORED = ("ridge", "size", "pretension", "memory_origin", "chaos", "robustness", "buckling")
 TABLES |= {study: [study] for study in SCORED}
+TABLES["ridge"] = ["ridge", "ridge_onset"]
+TABLES["calibration"] = ["calibration", "calibration_check"]
 # which tables each figure is drawn from; every study named here has a module fiberweb.plotting.X
 DRAWN_FROM = {
-    "ridge": ["ridge", "ridge_floors"],
+    "ridge": ["ridge", "ridge_onset", "ridge_floors"],
     "size": ["size", "ridge_floors"],
     "pretension": ["pretension", "ridge_floors"],
+    "memory_origin": ["memory_origin", "memory_origin_floors"],
+    "calibration": ["calibration", "calibration_check"],
+    "noise": ["noise", "noise_floors"],
+    "chaos": ["chaos_rates", "chaos_separations", "chaos_floors"],
+    "robustness": ["robustness", "robustness_alpha", "robustness_floors"],
 }
 DRAWN = ["topology", *DRAWN_FROM]
 
 
 rule study_table:
     input:
-        code=code(
-            "buckling.py", "capacity.py", "dataset.py", "network.py", "scene.py", "tables.py"
-        ),
+        code=code("buckling.py", "capacity.py", "dataset.py", "network.py", "scene.py", "tables.py"),
         capacities=lambda wildcards: capacities(wildcards.study, wildcards.setup),
     output:
         "<results>/tables/{setup}/{study}.csv",
@@ -38,6 +43,61 @@ rule study_table:
         "../scripts/study_table.py"
 
 
+rule calibration_table:
+    input:
+        code=code(
+            "buckling.py",
+            "calibration.py",
+            "capacity.py",
+            "claims*.py",
+            "claims.yaml",
+            "dataset.py",
+            "network.py",
+            "scene.py",
+            "tables.py",
+        ),
+        capacities=lambda wildcards: capacities("calibration", wildcards.setup),
+    output:
+        "<results>/tables/{setup}/calibration.csv",
+    log:
+        "<logs>/calibration/table-{setup}.log",
+    benchmark:
+        "<benchmarks>/calibration/table-{setup}.tsv"
+    conda:
+        "../../envs/environment.yaml"
+    message:
+        "Table of the study calibration, {wildcards.setup}"
+    script:
+        "../scripts/calibration_table.py"
+
+
+rule calibration_best:
+    input:
+        code=code(
+            "buckling.py",
+            "calibration.py",
+            "claims*.py",
+            "claims.yaml",
+            "network.py",
+            "scene.py",
+            "tables.py",
+        ),
+        table="<results>/tables/{setup}/calibration.csv",
+    output:
+        "<results>/tables/{setup}/calibration_check.csv",
+    log:
+        "<logs>/calibration/best-{setup}.log",
+    benchmark:
+        "<benchmarks>/calibration/best-{setup}.tsv"
+    localrule: True
+    conda:
+        "../../envs/environment.yaml"
+    message:
+        "Holding the described setup's defaults against the grid's best point"
+    script:
+        "../scripts/calibration_best.py"
+
+
 checkpoint ridge_best:
     input:
         code=code("tables.py"),
@@ -56,6 +116,25 @@ checkpoint ridge_best:
         "../scripts/ridge_best.py"
 
 
+rule ridge_onset:
+    input:
+        code=code("onset.py", "tables.py"),
+        ridge="<results>/tables/{setup}/ridge.csv",
+    output:
+        "<results>/tables/{setup}/ridge_onset.csv",
+    log:
+        "<logs>/ridge/onset-{setup}.log",
+    benchmark:
+        "<benchmarks>/ridge/onset-{setup}.tsv"
+    localrule: True
+    conda:
+        "../../envs/environment.yaml"
+    message:
+        "Looking for where the capacities drop, {wildcards.setup}"
+    script:
+        "../scripts/ridge_onset.py"
+
+
 rule study_floors:
     input:
         code=code("capacity.py", "dataset.py", "ridge.py", "tables.py"),
@@ -67,7 +146,7 @@ rule study_floors:
     benchmark:
         "<benchmarks>/{study}/floors-{setup}.tsv"
     wildcard_constraints:
-        study="ridge|memory_origin",
+        study="ridge|memory_origin|noise|chaos|robustness",
     conda:
         "../../envs/environment.yaml"
     params:
@@ -81,7 +160,11 @@ rule study_floors:
 rule study_figure:
     input:
         code=lambda wildcards: code(
-            "plotting/__init__.py", f"plotting/{wildcards.study}.py", "plotting/style.py"
+            "buckling.py",
+            "plotting/__init__.py",
+            "plotting/style.py",
+            "plotting/sweep.py",
+            f"plotting/{wildcards.study}.py",
         ),
         tables=lambda wildcards: [
             f"<results>/tables/{'published' if wildcards.suffix else 'described'}/{table}.csv"

@@ -1,0 +1,119 @@
+"""What the figures of swept force, size and tension share: one line a spacing, and the floors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import FigureBase
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from fiberweb.plotting import style
+
+TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
+FLOORS = {"u": "$u$", "derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$"}
+FLOOR_LINE = {"color": style.GREY, "lw": 0.7, "ls": (0, (4, 2))}
+LABEL_GAP = 0.075  # share of the axis: floors closer than this share a label
+
+
+def rows_of(table: pd.DataFrame, study: str, setup: str) -> pd.DataFrame:
+    """The rows of one setup; ValueError, one sentence, if there are none."""
+    rows = table[table["setup"] == setup]
+    if rows.empty:
+        raise ValueError(f"the {study} table has no run of the {setup} setup to draw")
+    return rows
+
+
+def colours(spacings: Sequence[float]) -> dict[float, np.ndarray]:
+    """Colour of each spacing (m), dark to light as it grows."""
+    found = sorted(set(spacings))
+    return dict(zip(found, style.colours(len(found)), strict=True))
+
+
+def lines(ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict) -> None:
+    """A capacity over column x, one line a spacing, and the X's of unstable runs, each in the
+    colour of its spacing at the foot of the axes."""
+    for spacing, frame in rows.groupby("spacing_m"):
+        frame = frame.sort_values(x)
+        ax.plot(frame[x], frame[name], marker="o", ms=2.2, lw=0.9, color=colour[spacing])
+    unstable = rows[rows["status"] == "unstable"]
+    for at, frame in unstable.groupby(x):
+        for place, spacing in enumerate(sorted(frame["spacing_m"].unique())):
+            ax.plot(
+                [at], [0.04 + 0.05 * place], transform=ax.get_xaxis_transform(), zorder=5,
+                gid="unstable", **style.UNSTABLE | {"mfc": colour[spacing], "mew": 0.6},
+            )  # fmt: skip
+
+
+def top(rows: pd.DataFrame, floors: pd.DataFrame, name: str) -> float:
+    """A round end for the scale of a capacity, above its greatest value and every floor."""
+    return np.ceil(20 * np.fmax(rows[name].max(), floors[name].max()) + 0.2) / 20
+
+
+def typical_error(ax: Axes, rows: pd.DataFrame, name: str) -> None:
+    """The median standard error of a capacity as one bar in the lower left corner: bars on every
+    point would hide one another."""
+    error = rows[f"{name}_se"].median()
+    bottom = 0.03 * ax.get_ylim()[1]
+    ax.plot(
+        [0.018] * 2, [bottom, bottom + 2 * error], color=style.INK, lw=0.9,
+        transform=ax.get_yaxis_transform(), gid="error",
+    )  # fmt: skip
+
+
+def logarithmic(axis: Axis) -> None:
+    """A log scale with plain numbers, at decades, or at 1, 2 and 5 where there are few of them;
+    call it when the limits are final."""
+    low, high = axis.get_view_interval()
+    subs = (1.0,) if high / low > 100 else (1.0, 2.0, 5.0)
+    axis.set_major_locator(LogLocator(subs=subs))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def floors(ax: Axes, table: pd.DataFrame, name: str) -> None:
+    """What readouts of the input alone score, labelled beside the axes; call it last, because
+    labels that would overlap on the final scale are put together."""
+    gap = LABEL_GAP * np.ptp(ax.get_ylim())
+    groups: list[list[tuple[float, str]]] = []
+    for value, readout in sorted(zip(table[name], table["readout"], strict=True)):
+        ax.axhline(value, zorder=0, **FLOOR_LINE)
+        if groups and value - groups[-1][-1][0] < gap:
+            groups[-1].append((value, readout))
+        else:
+            groups.append([(value, readout)])
+    for group in groups:
+        labels = [FLOORS.get(readout, readout) for _, readout in reversed(group)]
+        ax.annotate(
+            "\n".join(labels), (1.01, float(np.mean([value for value, _ in group]))),
+            xycoords=("axes fraction", "data"), va="center", fontsize=6, color=style.GREY,
+        )  # fmt: skip
+
+
+def spacing_bar(figure: FigureBase, axes: Sequence[Axes], colour: dict) -> None:
+    """The key of the spacings beside the axes: one field of colour each, in mm."""
+    edges = np.arange(len(colour) + 1) - 0.5
+    shades = ScalarMappable(BoundaryNorm(edges, len(colour)), ListedColormap(colour.values()))
+    bar = figure.colorbar(shades, ax=axes, pad=0.015, fraction=0.03, aspect=25)
+    bar.set_label("Spacing (mm)")
+    bar.set_ticks(range(len(colour)), labels=[f"{1e3 * spacing:g}" for spacing in colour])
+    bar.ax.tick_params(length=0)
+    bar.minorticks_off()
+    bar.outline.set_linewidth(0.4)
+
+
+def key(rows: pd.DataFrame) -> dict[str, Line2D]:
+    """Legend entries that these figures share, by label."""
+    handles = {"readouts made of the input alone": Line2D([], [], **FLOOR_LINE)}
+    if rows[["c_nl_se", "c_m_se"]].notna().any(axis=None):  # too short a run has none
+        bar = Line2D([], [], marker="|", ms=7, mew=0.9, ls="", color=style.INK)
+        handles["± median standard error"] = bar
+    if (rows["status"] == "unstable").any():
+        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
+    return handles

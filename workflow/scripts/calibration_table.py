@@ -1,0 +1,9 @@
+"""Table of the calibration: one row a run, with the paper's four numbers and their misfit."""
+
+from logs import to_log
+
+from fiberweb.calibration import table
+from fiberweb.tables import write
+
+to_log(snakemake.log[0])
+write(table(snakemake.input.capacities), snakemake.output[0])

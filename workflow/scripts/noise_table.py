@@ -1,0 +1,8 @@
+"""Capacities against readout noise in one setup."""
+
+from logs import to_log
+
+from fiberweb import noise, tables
+
+to_log(snakemake.log[0])
+tables.write(noise.table(snakemake.input.responses, **snakemake.params), snakemake.output[0])
