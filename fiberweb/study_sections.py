@@ -171,7 +171,7 @@ class CalibrationSection(Section):
     length: Positive = key(0.5, "fibre length", "m")
     crossing_stiffness: Some[Positive] = key([40.0, 70.0, 100.0], "springs", "N/m")
     crossing_damping: Some[NotNegative] = key([2.0, 3.0, 5.0], "dampers", "N s/m")
-    damping: Some[NotNegative] = key([5.0, 10.0, 20.0], "rates of velocity damping", "1/s")
+    damping: Some[NotNegative] = key([2.5, 5.0, 10.0, 20.0], "rates of velocity damping", "1/s")
 
     @model_validator(mode="after")
     def _has_8(self) -> Self:

@@ -39,7 +39,7 @@ from fiberweb.engines.cosserat_passes import (
     stress_pass,
     velocity_pass,
 )
-from fiberweb.engines.jit import kernel, summing
+from fiberweb.engines.jit import entry, kernel, summing
 from fiberweb.engines.laplace import (
     GAP,
     REACH,
@@ -48,7 +48,7 @@ from fiberweb.engines.laplace import (
     filtered_points,
     laplace_filter,
 )
-from fiberweb.engines.layout import Layout, lay_out
+from fiberweb.engines.layout import Layout, Strips, lay_out, packed, strips
 from fiberweb.mesh import Mesh
 
 SHEAR_FACTOR = 27.0 / 28.0  # alpha_c of a round section at Poisson's ratio 1/2, as PyElastica's
@@ -76,60 +76,70 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
         ValueError: crossings without compliance.
     """
     refuse(mesh)
-    scene, layout = mesh.scene, lay_out(mesh, GAP if mesh.scene.filter_order else 1)
+    scene, layout = mesh.scene, lay_out(mesh, GAP)
     per_sample = steps_per_sample(scene, numerics.time_step)
     step = 1.0 / (scene.sample_rate * per_sample)
     nodes, weights = readout_arrays(mesh)
-    size = len(layout.x)
+    strip = strips(mesh, layout, REACH)
     angle = np.arctan2(np.diff(layout.y), np.diff(layout.x))
     angle[angle < -np.pi + 1e-6] += 2 * np.pi  # a fibre along -x must not straddle the cut
-    x, y = layout.x.copy(), layout.y.copy()
-    x[layout.at] += mesh.start[:, 0]
-    y[layout.at] += mesh.start[:, 1]
-    state = (
-        x, y, np.zeros(size), np.zeros(size),
-        angle, np.zeros(size - 1), np.cos(angle), np.sin(angle),
-    )  # fmt: skip
-    work = tuple(np.zeros(size) for _ in range(8))
-    node_arrays, element_arrays, books = coefficients(mesh, layout, step)
-    ties = (layout.joints, mesh.joint_stiffness, mesh.joint_damping)
-    readouts = (layout.at[nodes], weights, layout.x, layout.y)
+    angle = angle[strip.edges]
+    rest_x, rest_y = packed(layout.x[strip.nodes], layout.y[strip.nodes])
+    still = np.zeros(len(strip.nodes))
+    state = packed(
+        rest_x, rest_y, still, still, angle, np.zeros(len(angle)), np.cos(angle), np.sin(angle)
+    )
+    state[0][strip.place[layout.at]] += mesh.start[:, 0]
+    state[1][strip.place[layout.at]] += mesh.start[:, 1]
+    work = packed(*[still] * 8)
+    node_arrays, element_arrays, books = coefficients(mesh, layout, strip, step)
+    ties = (strip.place[layout.joints], mesh.joint_stiffness, mesh.joint_damping)
+    readouts = (strip.place[layout.at[nodes]], weights, rest_x, rest_y)
     limit = RUNAWAY * scene.wave_speed
     decay = np.exp(-scene.damping * step)
     scalars = (scene.drive_rate, scene.tension_ramp, step, limit, decay)
-    quarter_node, quarter_element = (0.25 * inside for inside in filtered_points(layout))
+    inner_nodes, inner_elements = filtered_points(layout)
+    first, last = mesh.first[:-1], mesh.first[1:] - 1
     filtering = (
-        scene.filter_order, 4.0 * filter_stencil(scene.filter_order), quarter_node,
-        quarter_element, layout.at[mesh.first[:-1]], layout.at[mesh.first[1:] - 1],
+        scene.filter_order, 4.0 * filter_stencil(scene.filter_order),
+        *packed(0.25 * inner_nodes[strip.nodes], 0.25 * inner_elements[strip.edges]),
+        strip.place[layout.at[first]], strip.place[layout.at[last]],
     )  # fmt: skip
 
     def advance_to(first, displacement, energy):
         return advance(
             state, work, node_arrays, element_arrays, ties, filtering, mesh.drive,
-            readouts, books, scalars, per_sample, first, displacement, energy,
+            readouts, books, scalars, strip.stride, per_sample, first, displacement, energy,
         )  # fmt: skip
 
     return record_in_chunks(scene, len(nodes), advance_to)
 
 
-def coefficients(mesh: Mesh, layout: Layout, step: float):
+def coefficients(mesh: Mesh, layout: Layout, strip: Strips, step: float):
     """What the kernel multiplies with, over nodes and over elements, and what its books need."""
     scene = mesh.scene
     inertia_per_length = scene.density * np.pi * scene.diameter**4 / 64
     inertia = inertia_per_length * layout.edge
     uniform, stretched = rotation_damping(mesh, layout, inertia)
-    loaded = np.flatnonzero(layout.load_x**2 + layout.load_y**2)
-    node_arrays = (
+    load_x, load_y = layout.load_x[strip.nodes], layout.load_y[strip.nodes]
+    loaded = np.flatnonzero(load_x**2 + load_y**2)
+    over_nodes = (
         step * layout.free_x / layout.mass, step * layout.free_y / layout.mass,
         layout.pull_x, layout.pull_y, scene.bending_stiffness * layout.bends / layout.span,
-        0.5 / layout.voronoi, loaded, layout.load_x[loaded], layout.load_y[loaded],
+        0.5 / layout.voronoi,
+    )  # fmt: skip
+    over_elements = (
+        layout.edge, layout.solid / layout.edge, np.exp(-uniform * step), stretched * step
+    )  # fmt: skip
+    node_arrays = (
+        *packed(*(a[strip.nodes] for a in over_nodes)), loaded, load_x[loaded], load_y[loaded]
     )  # fmt: skip
     element_arrays = (
-        layout.edge, layout.solid / layout.edge, np.exp(-uniform * step), stretched * step,
-        scene.axial_stiffness, scene.axial_stiffness / 3.0 * SHEAR_FACTOR,
-        1.0 / inertia_per_length,
+        *packed(*(a[strip.edges] for a in over_elements)), scene.axial_stiffness,
+        scene.axial_stiffness / 3.0 * SHEAR_FACTOR, 1.0 / inertia_per_length,
     )  # fmt: skip
-    books = (np.zeros(2), layout.mass, layout.solid * inertia, scene.damping, uniform)
+    of_elements = (layout.solid * inertia)[strip.edges], uniform[strip.edges]
+    books = (np.zeros(2), layout.mass[strip.nodes], of_elements[0], scene.damping, of_elements[1])
     return node_arrays, element_arrays, books
 
 
@@ -171,25 +181,24 @@ def outer_forces(x, y, vx, vy, joints, stiffness, damping, pull_x, pull_y, ramp,
 
 
 @kernel
-def strain_energy(x, y, angle, node_arrays, element_arrays):
+def strain_energy(x, y, angle, node_arrays, element_arrays, stride):
     """Elastic energy of the fibres (J): the potential of stretch, and of shear and bending to
     leading order in the stretch, whose factors in PyElastica's equations have none."""
     bend, half_over_voronoi = node_arrays[4], node_arrays[5]
     edge, over_edge, _, _, axial, shear, _ = element_arrays
-    total, before = 0.0, 0.0
+    length = np.sqrt((x[stride:] - x[:-stride]) ** 2 + (y[stride:] - y[:-stride]) ** 2)
+    total = 0.0
     for i in range(angle.shape[0]):
-        dx, dy = x[i + 1] - x[i], y[i + 1] - y[i]
-        length = np.sqrt(dx * dx + dy * dy)
+        dx, dy = x[i + stride] - x[i], y[i + stride] - y[i]
         c, s = np.cos(angle[i]), np.sin(angle[i])
         along = (dx * c + dy * s) * over_edge[i]
         across = (dy * c - dx * s) * over_edge[i]
         if over_edge[i] > 0.0:
             total += axial * edge[i] * (along - 1.0 - np.log(along))
             total += 0.5 * shear * edge[i] * across * across
-        if i > 0 and bend[i] > 0.0:
-            e = (before + length) * half_over_voronoi[i]
-            total += 0.5 * bend[i] * (angle[i] - angle[i - 1]) ** 2 / (e * e * e)
-        before = length
+        if bend[i] > 0.0:
+            e = (length[i - stride] + length[i]) * half_over_voronoi[i]
+            total += 0.5 * bend[i] * (angle[i] - angle[i - stride]) ** 2 / (e * e * e)
     return total
 
 
@@ -212,10 +221,10 @@ def filter_loss(unfiltered, before, filtered, mass):
     return total
 
 
-@kernel
+@entry
 def advance(
     state, work, node_arrays, element_arrays, ties, filtering, drive, readouts, books, scalars,
-    per_sample, first, out, energy,
+    stride, per_sample, first, out, energy,
 ):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
@@ -227,19 +236,20 @@ def advance(
         ties: joints, their stiffness and damping.
         filtering: order and weights of the filter, where it acts on nodes and on elements, and
             the first and last node of each fibre.
-        drive, readouts, scalars, per_sample, first, out, energy: as in the kirchhoff engine.
+        drive, readouts, scalars, stride, per_sample, first, out, energy: as in the kirchhoff
+            engine.
 
     Returns:
         How many samples were recorded before the run became unstable.
     """
     x, y, vx, vy, angle, omega, c, s = state
-    fx, fy, length, alpha = work[0][1:], work[1][1:], work[2][1:], work[3][1:]
+    fx, fy, length, alpha = work[0][stride:], work[1][stride:], work[2][stride:], work[3][stride:]
     couple, outer_x, outer_y, scratch = work[4], work[5], work[6], work[7]
     kick_x, kick_y, pull_x, pull_y, bend, half_over_voronoi, loaded, load_x, load_y = node_arrays
     edge, over_edge, spin_decay, stretched, axial, shear, over_inertia = element_arrays
     joints, stiffness, damping = ties
     order, stencil, quarter_node, quarter_element, firsts, lasts = filtering
-    last_elements = lasts - 1
+    last_elements = lasts - stride
     at, weights, rest_x, rest_y = readouts
     done, mass, inertia, rate, spin_rate = books
     drive_rate, ramp_time, step, limit, decay = scalars
@@ -248,30 +258,24 @@ def advance(
     was_x, was_y, was_o = vx.copy(), vy.copy(), omega.copy()
     every = max(1, int(BOOKING / step))
     # views are made once: at a few hundred elements they would cost a fifth of the step
-    x0, x1, y0, y1, vx0, vx1, vy0, vy1 = (
-        x[:-1],
-        x[1:],
-        y[:-1],
-        y[1:],
-        vx[:-1],
-        vx[1:],
-        vy[:-1],
-        vy[1:],
-    )
-    angle0, angle1, length0, length1 = angle[:-1], angle[1:], length[:-1], length[1:]
-    inner_bend, inner_half, inner_couple = bend[1:-1], half_over_voronoi[1:-1], couple[1:-1]
-    couple0, couple1, fx0, fx1, fy0, fy1 = couple[:-1], couple[1:], fx[:-1], fx[1:], fy[:-1], fy[1:]
-    vxi, vyi, oxi, oyi = vx[1:-1], vy[1:-1], outer_x[1:-1], outer_y[1:-1]
-    kxi, kyi, short = kick_x[1:-1], kick_y[1:-1], scratch[:-1]
-    views_x = filter_views(vx, quarter_node, scratch)
-    views_y = filter_views(vy, quarter_node, scratch)
-    views_omega = filter_views(omega, quarter_element, short)
+    a, b, inner = slice(0, -stride), slice(stride, None), slice(stride, -stride)
+    x0, x1, y0, y1, vx0, vx1, vy0, vy1 = x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b]
+    angle0, angle1, length0, length1 = angle[a], angle[b], length[a], length[b]
+    inner_bend, inner_half, inner_couple = bend[inner], half_over_voronoi[inner], couple[inner]
+    couple0, couple1, fx0, fx1, fy0, fy1 = couple[a], couple[b], fx[a], fx[b], fy[a], fy[b]
+    vxi, vyi, oxi, oyi = vx[inner], vy[inner], outer_x[inner], outer_y[inner]
+    kxi, kyi, short = kick_x[inner], kick_y[inner], scratch[a]
+    views_x = filter_views(vx, quarter_node, scratch, stride)
+    views_y = filter_views(vy, quarter_node, scratch, stride)
+    views_omega = filter_views(omega, quarter_element, short, stride)
     for sample in range(out.shape[0]):
         record(x, y, vx, vy, at, weights, rest_x, rest_y, 0.5 * step, out[sample])
         here_x, here_y = x - 0.5 * step * vx, y - 0.5 * step * vy
         here_angle = angle - 0.5 * step * omega
         energy[sample, 0] = 0.5 * squared_speed(vx, vy, mass) + 0.5 * squared_spin(omega, inertia)
-        energy[sample, 1] = strain_energy(here_x, here_y, here_angle, node_arrays, element_arrays)
+        energy[sample, 1] = strain_energy(
+            here_x, here_y, here_angle, node_arrays, element_arrays, stride
+        )
         energy[sample, 1] += joint_energy(here_x, here_y, joints, stiffness)
         start = (first + sample) * per_sample
         ramp = min(1.0, start * step / ramp_time) if ramp_time > 0.0 else 1.0
@@ -335,9 +339,9 @@ def advance(
                     was_y[:] = vy
                     was_o[:] = omega
             if filtered:
-                laplace_filter(views_x, firsts, lasts, stencil, scratch)
-                laplace_filter(views_y, firsts, lasts, stencil, scratch)
-                laplace_filter(views_omega, firsts, last_elements, stencil, short)
+                laplace_filter(views_x, firsts, lasts, stencil, scratch, stride)
+                laplace_filter(views_y, firsts, lasts, stencil, scratch, stride)
+                laplace_filter(views_omega, firsts, last_elements, stencil, short, stride)
             if booked:
                 if filtered:
                     # of leapfrog's kick, what the filter takes away never became work

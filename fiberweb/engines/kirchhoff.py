@@ -58,7 +58,7 @@ from fiberweb.engines.crossings import (
     look_at_pairs,
     pair_pass,
 )
-from fiberweb.engines.jit import kernel
+from fiberweb.engines.jit import entry, kernel
 from fiberweb.engines.kirchhoff_passes import (
     edge_views,
     force_pass,
@@ -215,7 +215,7 @@ def pass_views(state, work, chain, s):
     )  # fmt: skip
 
 
-@kernel
+@entry
 def advance(
     state, work, chain, joints, drive, readouts, books, scalars, stride, per_sample, first, out,
     energy,

@@ -49,22 +49,24 @@ def stencil_pass(rate, inside, f, l1, r1, l2, r2, l3, r3, l4, r4, l5, r5, w0, w1
 
 
 @kernel
-def filter_views(rate, inside, f):
-    """The shifted parts of its arrays that the filter's passes run over."""
-    n, g = rate.shape[0], REACH
+def filter_views(rate, inside, f, s):
+    """The shifted parts of its arrays that the filter's passes run over; neighbours are s apart."""
+    n, g = rate.shape[0], REACH * s
     m = n - g
     return (
-        (rate[:-2], rate[1:-1], rate[2:], inside[1:-1], f[1:-1]),
+        (rate[: n - 2 * s], rate[s : n - s], rate[2 * s :], inside[s : n - s], f[s : n - s]),
         (
-            rate[g:m], inside[g:m], f[g:m], f[g - 1 : m - 1], f[g + 1 : m + 1],
-            f[g - 2 : m - 2], f[g + 2 : m + 2], f[g - 3 : m - 3], f[g + 3 : m + 3],
-            f[g - 4 : m - 4], f[g + 4 : m + 4], f[g - 5 : m - 5], f[g + 5 : m + 5],
+            rate[g:m], inside[g:m], f[g:m], f[g - s : m - s], f[g + s : m + s],
+            f[g - 2 * s : m - 2 * s], f[g + 2 * s : m + 2 * s],
+            f[g - 3 * s : m - 3 * s], f[g + 3 * s : m + 3 * s],
+            f[g - 4 * s : m - 4 * s], f[g + 4 * s : m + 4 * s],
+            f[g - 5 * s : m - 5 * s], f[g + 5 * s : m + 5 * s],
         ),
     )  # fmt: skip
 
 
 @kernel
-def laplace_filter(views, firsts, lasts, w, f):
+def laplace_filter(views, firsts, lasts, w, f, s):
     """Jeanmart-Winckelmans filter: what is left of `rate` after six second differences is
     taken away.
 
@@ -75,9 +77,9 @@ def laplace_filter(views, firsts, lasts, w, f):
     `filter_stencil`.
     """
     difference_pass(*views[0])
-    for k in range(lasts.shape[0]):
-        a, b = firsts[k], lasts[k]
-        for j in range(1, REACH + 1):
+    for j in range(s, (REACH + 1) * s, s):
+        for k in range(lasts.shape[0]):
+            a, b = firsts[k], lasts[k]
             f[a - j] = -f[a + j]
             f[b + j] = -f[b - j]
     stencil_pass(*views[1], w[0], w[1], w[2], w[3], w[4], w[5])
