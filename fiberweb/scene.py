@@ -24,7 +24,7 @@ PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one p
 # the order-6 Laplace filter on the crosshatch only, a softer pin on the polygon.
 SETUPS = {
     ("described", "crosshatch"): dict(
-        crossing_stiffness=70.0, crossing_damping=3.0, damping=10.0, filter_order=0, ends="clamped"
+        crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped"
     ),
     ("published", "crosshatch"): dict(
         crossing_stiffness=1e6, crossing_damping=0.0, damping=10.0, filter_order=6, ends="sliding"

@@ -94,9 +94,7 @@ class NumericsSection(Section):
     elements_per_section: Annotated[int, Field(ge=1)] | None = key(
         None, "elements between two crossings"
     )
-    time_step: Positive | None = key(
-        None, "at most the stability limit; null takes 0.9 of it", "s"
-    )
+    time_step: Positive | None = key(None, "at most the stability limit; null takes 0.9 of it", "s")
     force_time_step: bool = key(False, "accept a time step above the limit, to see it fail")
 
     @model_validator(mode="after")

@@ -73,7 +73,7 @@ def moment_pass(
     for i in range(slope.shape[0]):
         near = c[i] * s[i] + c_up[i] * s_up[i] + c_down[i] * s_down[i]
         far = c_up2[i] * s_up2[i] + c_down2[i] * s_down2[i]
-        slope[i] *= (near + far + bowing0[i] + bowing1[i])
+        slope[i] *= near + far + bowing0[i] + bowing1[i]
 
 
 @kernel

@@ -1,5 +1,6 @@
 # The run table, and where things lie. Config errors end here, as one sentence each.
 
+import os
 import sys
 from glob import glob
 from pathlib import Path
@@ -7,6 +8,8 @@ from pathlib import Path
 from fiberweb.config import check_folders, load
 from fiberweb.runs import SETUPS, STUDIES, check, example, run_table, runs
 
+# jobs run side by side, and sums in another order by more threads would give other bits
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
 PUBLISHED = {"published", "published_all"}
 TABLES = {}  # the tables of each study; its rule file adds them
