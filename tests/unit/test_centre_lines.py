@@ -73,7 +73,7 @@ def test_nodes_are_readouts_of_the_mesh_after_all_others():
     mesh = build(SCENE, 4)
     assert mesh.readouts[: len(plain.readouts)] == plain.readouts
     nodes = mesh.readouts[len(plain.readouts) :]
-    assert [readout.nodes for readout in nodes] == [(i, i) for i in range(len(mesh.position))]
+    assert [readout.nodes for readout in nodes] == [(i,) * 4 for i in range(len(mesh.position))]
     assert nodes[13][:3] == ("node", 1, 0)  # three sections of four elements a fibre
 
 

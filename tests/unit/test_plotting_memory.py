@@ -51,7 +51,7 @@ def origin():
 @pytest.fixture(scope="module")
 def points():
     """A grid of the calibration whose best point is not the defaults'; one run unstable."""
-    axes = ([40.0, 70.0, 100.0], [2.0, 3.0, 5.0], [5.0, 10.0], [4, 8])
+    axes = ([40.0, 70.0, 100.0], [2.0, 3.0, 5.0], [1.0, 2.5], [4, 8])
     rows = [
         dict(zip((*grid.GRID, "n"), point, strict=True))
         | {"setup": "described", "status": "ok", "c_nl": 0.8, "c_m": 0.4}
@@ -143,8 +143,8 @@ def test_the_published_setup_compares_filter_on_and_off(origin, unsaved):
 
 
 def test_best_and_defaults_are_marked_where_they_are(drawn):
-    """Best at k = 40, nu = 2, gamma = 5: the first cell of the first map; the defaults, k = 70,
-    nu = 3, gamma = 10, in the middle of the second."""
+    """Best at k = 40, nu = 2, gamma = 1: the first cell of the first map; the defaults, k = 70,
+    nu = 3, gamma = 2.5, in the middle of the second."""
     figure = drawn["calibration"]
     first, second = figure.subfigs[0].axes[:2]
     (star,), (box,) = marked(figure, "best"), marked(figure, "default")
@@ -152,20 +152,20 @@ def test_best_and_defaults_are_marked_where_they_are(drawn):
     assert box.axes is second and np.round(box.get_center()).tolist() == [1, 1]
     (cross,) = marked(figure, "unstable")
     assert cross.axes is second and cross.get_xydata().tolist() == [[2, 2]]
-    assert "47.0" in said(figure)  # misfit of the best
+    assert "43.0" in said(figure)  # misfit of the best
 
 
 def test_the_best_points_are_listed_by_misfit(drawn):
     ax = drawn["calibration"].subfigs[1].axes[0]
     labels = [label.get_text().split("   ")[0] for label in ax.get_yticklabels()]
-    assert labels[0] == "40, 2, 5"
-    assert labels[-1] == "70, 3, 10"  # the defaults come last where they are not among the best
+    assert labels[0] == "40, 2, 1"
+    assert labels[-1] == "70, 3, 2.5"  # the defaults come last where they are not among the best
     assert len(labels) == calibration.SHOWN + 1
 
 
 def test_a_grid_of_one_point_is_drawn(points, tmp_path):
     table = points["calibration"]
-    one = table[(table["misfit"] == 83.0)]
+    one = table[(table["misfit"] == 75.5)]
     tables = {"calibration": one, "calibration_check": grid.check(one)}
     figure = calibration.draw(tables, "described", tmp_path / "one.png")
     assert marked(figure, "best") and marked(figure, "default")

@@ -12,7 +12,7 @@ import pytest
 from fiberweb import capacity, schema
 from fiberweb.config import HORIZON, NumericsSection, check_folders, load
 from fiberweb.engines.choose import ACCURACIES, ENGINES
-from fiberweb.runs import SETUPS, STUDIES, example, run_table, runs
+from fiberweb.runs import SETUPS, STUDIES, Run, check, example, run_table, runs
 from fiberweb.studies import CHOICES
 
 ROOT = Path(__file__).parents[2]
@@ -114,6 +114,24 @@ def test_time_step_above_the_limit_names_the_limit():
     text = str(caught.value)
     assert is_one_sentence(text)
     assert text.startswith(run.name) and "time_step = 0.001 s" in text and "limit of" in text
+
+
+def test_a_step_is_checked_for_every_network_but_not_for_every_force(monkeypatch):
+    checked = []
+    monkeypatch.setattr(Run, "check", lambda run: checked.append(run))
+    own_step = {"numerics": {"accuracy": None, "time_step": 1e-5}}
+    check(runs(load(own_step), "ridge", "described"))
+    assert len(checked) == 14
+    checked.clear()
+    check(runs(load(), "ridge", "described"))
+    assert len(checked) == 1
+
+
+def test_a_tension_that_no_fibre_holds_is_found_in_any_study():
+    found = runs(load({"pretension": {"tension": [0.01, 400.0]}}), "pretension", "published")
+    with pytest.raises(ValueError, match="tension = 400 N: no fibre holds") as caught:
+        check(found)
+    assert is_one_sentence(str(caught.value))
 
 
 @pytest.mark.parametrize(
