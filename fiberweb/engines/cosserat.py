@@ -34,12 +34,15 @@ from fiberweb.engines.books import (
 from fiberweb.engines.cosserat_passes import (
     couple_pass,
     drift_pass,
+    filter_loss,
     rotate_pass,
     spin_pass,
+    squared_spin,
+    strain_energy,
     stress_pass,
     velocity_pass,
 )
-from fiberweb.engines.jit import entry, kernel, summing
+from fiberweb.engines.jit import entry, kernel
 from fiberweb.engines.laplace import (
     GAP,
     REACH,
@@ -178,47 +181,6 @@ def outer_forces(x, y, vx, vy, joints, stiffness, damping, pull_x, pull_y, ramp,
         outer_y[a] += fy
         outer_x[b] -= fx
         outer_y[b] -= fy
-
-
-@kernel
-def strain_energy(x, y, angle, node_arrays, element_arrays, stride):
-    """Elastic energy of the fibres (J): the potential of stretch, and of shear and bending to
-    leading order in the stretch, whose factors in PyElastica's equations have none."""
-    bend, half_over_voronoi = node_arrays[4], node_arrays[5]
-    edge, over_edge, _, _, axial, shear, _ = element_arrays
-    length = np.sqrt((x[stride:] - x[:-stride]) ** 2 + (y[stride:] - y[:-stride]) ** 2)
-    total = 0.0
-    for i in range(angle.shape[0]):
-        dx, dy = x[i + stride] - x[i], y[i + stride] - y[i]
-        c, s = np.cos(angle[i]), np.sin(angle[i])
-        along = (dx * c + dy * s) * over_edge[i]
-        across = (dy * c - dx * s) * over_edge[i]
-        if over_edge[i] > 0.0:
-            total += axial * edge[i] * (along - 1.0 - np.log(along))
-            total += 0.5 * shear * edge[i] * across * across
-        if bend[i] > 0.0:
-            e = (length[i - stride] + length[i]) * half_over_voronoi[i]
-            total += 0.5 * bend[i] * (angle[i] - angle[i - stride]) ** 2 / (e * e * e)
-    return total
-
-
-@summing
-def squared_spin(omega, weight):
-    """Sum of weight times omega^2."""
-    total = 0.0
-    for i in range(omega.shape[0]):
-        total += weight[i] * omega[i] * omega[i]
-    return total
-
-
-@summing
-def filter_loss(unfiltered, before, filtered, mass):
-    """What the filter takes in a step (J): unfiltered and filtered velocities after the kick,
-    and those before it."""
-    total = 0.0
-    for i in range(mass.shape[0]):
-        total += 0.5 * mass[i] * (unfiltered[i] - filtered[i]) * (before[i] + filtered[i])
-    return total
 
 
 @entry
