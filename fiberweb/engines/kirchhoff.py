@@ -9,7 +9,7 @@ them. Stress is PyElastica's, EA (1 - l0 / l). Bending is fourth order in the el
   S^-1 X S^-1 X S^-1 with X = S - A, which couples two neighbours on each side. The zeroth
   order is the usual chain, with moment (EI / S) f(phi), where
 
-      f(phi) = sin(phi) (4 - cos(phi)) / 3 = phi (1 - phi^4 / 30 + ...)
+      f(phi) = sin(phi) (1 + w / 3 + 2 w^2 / 15) = phi (1 - phi^6 / 140 + ...), w = 1 - cos(phi)
 
   needs neither division nor arc tangent and is nowhere stiffer than at phi = 0.
 - A curved element is longer than its chord by b^2 / 24, b the angle it turns through. Without

@@ -42,9 +42,9 @@ def turn_pass(tx0, tx1, ty0, ty1, over_span, curvature, slope):
     for i in range(curvature.shape[0]):
         sine = tx0[i] * ty1[i] - ty0[i] * tx1[i]
         cosine = tx0[i] * tx1[i] + ty0[i] * ty1[i]
-        third = over_span[i] * (1.0 / 3.0)
-        curvature[i] = third * sine * (4.0 - cosine)
-        slope[i] = third * (1.0 + cosine * (4.0 - 2.0 * cosine))
+        w = 1.0 - cosine
+        curvature[i] = over_span[i] * sine * (1.0 + w * (1.0 / 3.0 + w * (2.0 / 15.0)))
+        slope[i] = over_span[i] * (1.0 - 0.4 * w * w * w)
 
 
 @kernel

@@ -38,7 +38,10 @@ def kirchhoff_energy(nodes, rest, scene: Scene, clamped: bool, order: int = 4):
     a, b = tangents[..., :-1, :], tangents[..., 1:, :]
     sine = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     cosine = (a * b).sum(-1)
-    curvature = sine * (4 - cosine) / 3 / span  # at the wall, if any, and at the inner nodes
+    w = 1 - cosine
+    curvature = (
+        sine * (1 + w / 3 + 2 * w**2 / 15) / span
+    )  # at the wall, if any, and at the inner nodes
     form = np.diag(span)
     bow = 0.0
     if order == 4:
