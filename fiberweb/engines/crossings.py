@@ -151,18 +151,23 @@ def look_at_groups(members, before, x, y, vx, vy):
 
 
 @kernel
-def group_pass(members, before, operators, x, v, step):
-    """The same for one crossing of any number of nodes and one direction, by dense operators P, Q
-    and S; `before` has the members' velocities, then positions, before the kick."""
-    count = members.shape[0]
-    kicked = before[0].copy()
-    for i in range(count):
+def group_pass(groups, before, kicked, x, v, step):
+    """The same for crossings of any number of nodes and one direction, by dense operators P, Q
+    and S; `before` has the members' velocities, then positions, before the kick, and `kicked` is
+    scratch."""
+    starts, members, offsets, operators = groups
+    for i in range(members.shape[0]):
         kicked[i] = v[members[i]]
-    for i in range(count):
-        new = 0.0
-        for j in range(count):
-            k = i * count + j
-            new += operators[k] * before[0, j] + operators[count * count + k] * kicked[j]
-            new += operators[2 * count * count + k] * before[1, j]
-        v[members[i]] = new
-        x[members[i]] += step * (new - kicked[i])
+    for g in range(starts.shape[0] - 1):
+        first, count = starts[g], starts[g + 1] - starts[g]
+        p = offsets[g]
+        q, s = p + count * count, p + 2 * count * count
+        for i in range(count):
+            new = 0.0
+            for j in range(count):
+                k, m = i * count + j, first + j
+                new += operators[p + k] * before[0, m] + operators[q + k] * kicked[m]
+                new += operators[s + k] * before[1, m]
+            n = members[first + i]
+            v[n] = new
+            x[n] += step * (new - kicked[first + i])

@@ -242,9 +242,11 @@ def advance(
     """
     x, y, vx, vy = state
     pull_x, pull_y, loaded, load_x, load_y, half = chain[8:]
-    pairs, (starts, members, offsets, operators) = joints[:7], joints[7:]
+    pairs, groups = joints[:7], joints[7:]
+    members = groups[1]
     motion = np.zeros((4, pairs[0].shape[0]))
-    before = np.zeros((4, members.shape[0]))
+    before, kicked = np.zeros((4, members.shape[0])), np.zeros(members.shape[0])
+    before_x, before_y = before[:2], before[2:]
     nodes, weights, rest_x, rest_y = readouts
     done, mass, damping, ties, tie_stiffness, tie_damping = books
     drive_rate, ramp_time, step, limit, decay = scalars
@@ -291,10 +293,8 @@ def advance(
             kick_pass(*x_kick, decay, step)
             kick_pass(*y_kick, decay, step)
             pair_pass(pairs, motion, x, y, vx, vy, step)
-            for g in range(starts.shape[0] - 1):
-                part = slice(starts[g], starts[g + 1])
-                group_pass(members[part], before[:2, part], operators[offsets[g] :], x, vx, step)
-                group_pass(members[part], before[2:, part], operators[offsets[g] :], y, vy, step)
+            group_pass(groups, before_x, kicked, x, vx, step)
+            group_pass(groups, before_y, kicked, y, vy, step)
             for i in range(loaded.shape[0]):
                 m = loaded[i]
                 done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])

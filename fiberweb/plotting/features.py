@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 
 from fiberweb import groups
 from fiberweb.network import Network, crosshatch
-from fiberweb.plotting import style
+from fiberweb.plotting import style, sweep
 
 TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
 NAMES = {
@@ -46,7 +46,6 @@ BAR = 0.26  # width, where groups lie 1 apart
 HELD = {"color": style.GREY, "marker": "s", "ms": 2.4, "mew": 0, "ls": ""}
 PULLED = {"color": style.GREY, "marker": ">", "ms": 3, "mew": 0, "ls": ""}
 SHUFFLED = {"color": style.INK, "marker": "D", "mfc": "white", "mew": 0.6, "ms": 2.4, "ls": ""}
-FLOOR_LINE = {"color": style.GREY, "lw": 0.7, "ls": (0, (4, 2))}
 RANK_LINE = {"color": style.INK, "lw": 0.8, "ls": (0, (1, 1.5))}
 
 
@@ -151,7 +150,7 @@ def _scores(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame) -> None:
         for force in forces:
             _bars(ax, table[table["force_N"] == force], names, column, colour[force], shift[force])
         for value in floors[column]:
-            ax.axhline(value, zorder=3, **FLOOR_LINE)
+            ax.axhline(value, zorder=3, **sweep.FLOOR_LINE)
         _shares(ax, table[table["verdict"]], names, column)
         ax.set(ylabel=symbol, ylim=(0, None))
     ranks, counts = axes[2], table.drop_duplicates("group").set_index("group")["n_signals"]
@@ -213,7 +212,7 @@ def _key(part: SubFigure, table: pd.DataFrame, colour: dict) -> None:
         label = f"{force:g} N (B = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
         handles[label] = Line2D([], [], color=colour[force], lw=4)
     handles["shuffled split"] = Line2D([], [], **SHUFFLED)
-    handles["input alone"] = Line2D([], [], **FLOOR_LINE)
+    handles["input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
     if (table["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
     legend = part.legend(

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
 from fiberweb.network import Network, crosshatch, polygon
-from fiberweb.plotting import style
+from fiberweb.plotting import style, sweep
 from fiberweb.scene import Scene
 
 if TYPE_CHECKING:
@@ -27,11 +27,8 @@ TITLES = {"crosshatch": "Crosshatch networks", "polygon": "Polygonal networks"}
 TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resolved in a third
 CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
 DRIVEN = r"$\updownarrow$"
-FLOORS = {"u": "$u$", "derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$"}
 TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
 TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
-FLOOR_LINE = {"color": style.GREY, "lw": 0.7, "ls": (0, (4, 2))}
-LABEL_GAP = 0.09  # floors closer than this share a label
 
 
 def draw(
@@ -175,11 +172,12 @@ def _capacities(
     )  # fmt: skip
     for ax, (name, symbol) in zip((nonlinear, memory), TOTALS.items(), strict=True):
         _total(ax, runs, name, colour)
-        if floors is not None:
-            _floors(ax, floors, name)
         ax.set(xlabel="N", ylabel=symbol, xticks=sizes)
     for ax in (by_order, by_lag, nonlinear, memory):
         ax.set_ylim(*CAPACITY_AXIS)
+    if floors is not None:
+        for ax, name in zip((nonlinear, memory), TOTALS, strict=True):
+            sweep.floors(ax, floors, name)
 
 
 def _key(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame | None) -> None:
@@ -189,7 +187,7 @@ def _key(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame | None) -> N
         "training": Line2D([], [], **TRAINING),
     }
     if floors is not None:
-        handles["readouts made of the input alone"] = Line2D([], [], **FLOOR_LINE)
+        handles["readouts made of the input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
     if (table["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
     legend = part.legend(
@@ -212,23 +210,6 @@ def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
         )  # fmt: skip
     style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
     ax.margins(x=0.08)
-
-
-def _floors(ax: Axes, floors: pd.DataFrame, name: str) -> None:
-    """What readouts of the input alone score, labelled beside the axes."""
-    groups: list[list[tuple[float, str]]] = []
-    for value, readout in sorted(zip(floors[name], floors["readout"], strict=True)):
-        ax.axhline(value, zorder=0, **FLOOR_LINE)
-        if groups and value - groups[-1][-1][0] < LABEL_GAP:
-            groups[-1].append((value, readout))
-        else:
-            groups.append([(value, readout)])
-    for group in groups:
-        labels = [FLOORS.get(readout, readout) for _, readout in reversed(group)]
-        ax.annotate(
-            "\n".join(labels), (1.02, float(np.mean([value for value, _ in group]))),
-            xycoords=("axes fraction", "data"), va="center", fontsize=6, color=style.GREY,
-        )  # fmt: skip
 
 
 def _traces(part: SubFigure, traces: xr.Dataset) -> None:

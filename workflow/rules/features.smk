@@ -85,6 +85,7 @@ rule features_figure:
             "plotting/__init__.py",
             "plotting/features.py",
             "plotting/style.py",
+            "plotting/sweep.py",
             "tables.py",
         ),
         table=of_setup("features.csv"),
