@@ -18,8 +18,11 @@ def reference_force(spacing: float, bending_stiffness: float) -> float:
 
 
 def authors_reference_force(spacing: float) -> float:
-    """Eq. 3 as the authors' scripts round it: 50e-6 N m^3 / s^3 (N), s in m."""
-    return 50e-6 / spacing**3
+    """Eq. 3 as the authors' scripts round it: 50e-6 N m^3 / s^3 (N), s in m.
+
+    To ten digits, as in their lists of forces, so that the same force is the same run.
+    """
+    return np.round(50e-6 / spacing**3, 10)
 
 
 def critical_force(spacing: float, diameter: float, youngs_modulus: float) -> float:

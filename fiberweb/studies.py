@@ -129,27 +129,26 @@ def memory_origin(config: Config, setup: str, best: Best | None, full: bool) -> 
         for name, values in sweeps.items():
             for value in values:
                 yield Point(scene(config, setup, at, **{name: value}), "eq3")
-        for rate in section.damping:
+        own = scene(config, setup, at).damping
+        for rate in dict.fromkeys([own, *section.damping]):
             pinned = {"crossing_stiffness": math.inf, "crossing_damping": 0.0, "damping": rate}
             yield Point(scene(config, setup, at, **pinned), "eq3")
         yield from _filtered(config, at)
 
 
 def _filtered(config: Config, network: Network) -> Iterator[Point]:
-    """The Laplace filter over the authors' crossings at one mesh and step, and no filter at the
-    same; at one size other meshes and steps too, because the filter's strength is of those."""
+    """The Laplace filter over the authors' crossings on several meshes and at several steps,
+    because its strength is of those, and no filter on the same meshes."""
     section = config.memory_origin
     elements, steps = section.filter_element, section.filter_step
-    meshes = [(elements[0], steps[0])]
-    if network.n == section.filter_n:
-        meshes += [(element, steps[0]) for element in elements[1:]]
-        meshes += [(elements[0], step) for step in steps[1:]]
+    meshes = [(element, steps[0]) for element in elements]
+    finer = [(elements[0], step) for step in steps[1:]]
     crossings = {key: AUTHORS[key] for key in ("crossing_stiffness", "crossing_damping")}
     off, on = (
         scene(config, "described", network, filter_order=order, **crossings)
         for order in (0, AUTHORS["filter_order"])
     )
-    for made, (element, step) in [(off, meshes[0]), *((on, mesh) for mesh in meshes)]:
+    for made, (element, step) in [*product((off, on), meshes), *product([on], finer)]:
         per_section = max(1, round(network.spacing / element))
         numerics = {
             "engine": "cosserat", "elements_per_section": per_section, "time_step": step

@@ -155,13 +155,12 @@ class MemoryOriginSection(Section):
     )
     filter_element: Some[Positive] = key(
         [0.01, 0.02, 0.005],
-        "lengths of the elements of runs with the Laplace filter; the first is every network's",
+        "lengths of the elements of runs with the Laplace filter, and of the same without",
         "m",
     )
     filter_step: Some[Positive] = key(
-        [5e-6, 2.5e-6], "steps of these runs; the first is every network's", "s"
+        [5e-6, 2.5e-6], "steps with it: the first on every mesh, others on the first", "s"
     )
-    filter_n: Size = key(4, "size of the crosshatch whose mesh and step are varied, N")
 
 
 class CalibrationSection(Section):

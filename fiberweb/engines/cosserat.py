@@ -96,7 +96,8 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     state[1][strip.place[layout.at]] += mesh.start[:, 1]
     work = packed(*[still] * 8)
     node_arrays, element_arrays, books = coefficients(mesh, layout, strip, step)
-    ties = (strip.place[layout.joints], mesh.joint_stiffness, mesh.joint_damping)
+    joints = strip.place[layout.joints].astype(np.uint64)
+    ties = (joints, mesh.joint_stiffness, mesh.joint_damping)
     readouts = (strip.place[layout.at[nodes]], weights, rest_x, rest_y)
     limit = RUNAWAY * scene.wave_speed
     decay = np.exp(-scene.damping * step)
@@ -106,7 +107,7 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     filtering = (
         scene.filter_order, 4.0 * filter_stencil(scene.filter_order),
         *packed(0.25 * inner_nodes[strip.nodes], 0.25 * inner_elements[strip.edges]),
-        strip.place[layout.at[first]], strip.place[layout.at[last]],
+        *(strip.place[layout.at[ends]][:: strip.stride].astype(np.uint64) for ends in (first, last)),
     )  # fmt: skip
 
     def advance_to(first, displacement, energy):
@@ -211,7 +212,7 @@ def advance(
     edge, over_edge, spin_decay, stretched, axial, shear, over_inertia = element_arrays
     joints, stiffness, damping = ties
     order, stencil, quarter_node, quarter_element, firsts, lasts = filtering
-    last_elements = lasts - stride
+    last_elements = lasts - np.uint64(stride)
     at, weights, rest_x, rest_y = readouts
     done, mass, inertia, rate, spin_rate = books
     drive_rate, ramp_time, step, limit, decay = scalars
@@ -219,14 +220,20 @@ def advance(
     old_x, old_y, old_o = vx.copy(), vy.copy(), omega.copy()
     was_x, was_y, was_o = vx.copy(), vy.copy(), omega.copy()
     every = max(1, int(BOOKING / step))
-    # views are made once: at a few hundred elements they would cost a fifth of the step
-    a, b, inner = slice(0, -stride), slice(stride, None), slice(stride, -stride)
+    # Views are made once: at a few hundred elements they would cost a fifth of the step. They leave
+    # out all ghosts before and after the chain but those that an element reaches.
+    low, high = (REACH - 1) * stride, x.shape[0] - (REACH - 1) * stride
+    a, b = slice(low, high - stride), slice(low + stride, high)
+    inner, before = slice(b.start, a.stop), slice(low, a.stop - stride)
     x0, x1, y0, y1, vx0, vx1, vy0, vy1 = x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b]
-    angle0, angle1, length0, length1 = angle[a], angle[b], length[a], length[b]
+    angle_a, omega_a, c_a, s_a, alpha_a = angle[a], omega[a], c[a], s[a], alpha[a]
+    edge_a, over_edge_a, spin_decay_a, stretched_a = edge[a], over_edge[a], spin_decay[a], stretched[a]
+    fx_a, fy_a, length_a, couple0, couple1 = fx[a], fy[a], length[a], couple[a], couple[b]
+    angle0, angle1, length0, length1 = angle[before], angle[inner], length[before], length[inner]
+    fx0, fx1, fy0, fy1 = fx[before], fx[inner], fy[before], fy[inner]
     inner_bend, inner_half, inner_couple = bend[inner], half_over_voronoi[inner], couple[inner]
-    couple0, couple1, fx0, fx1, fy0, fy1 = couple[a], couple[b], fx[a], fx[b], fy[a], fy[b]
     vxi, vyi, oxi, oyi = vx[inner], vy[inner], outer_x[inner], outer_y[inner]
-    kxi, kyi, short = kick_x[inner], kick_y[inner], scratch[a]
+    kxi, kyi, xi, yi, short = kick_x[inner], kick_y[inner], x[inner], y[inner], scratch[:-stride]
     views_x = filter_views(vx, quarter_node, scratch, stride)
     views_y = filter_views(vy, quarter_node, scratch, stride)
     views_omega = filter_views(omega, quarter_element, short, stride)
@@ -259,8 +266,8 @@ def advance(
                     outer_x[i] = ramp * pull_x[i]
                     outer_y[i] = ramp * pull_y[i]
             stress_pass(
-                x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, edge, over_edge, axial, shear,
-                over_inertia, fx, fy, length, alpha,
+                x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega_a, c_a, s_a, edge_a, over_edge_a, axial,
+                shear, over_inertia, fx_a, fy_a, length_a, alpha_a,
             )  # fmt: skip
             couple_pass(angle0, angle1, length0, length1, inner_bend, inner_half, inner_couple)
             u = drive_value(drive, drive_rate, time)
@@ -287,8 +294,8 @@ def advance(
             velocity_pass(vxi, fx0, fx1, oxi, kxi, decay)
             velocity_pass(vyi, fy0, fy1, oyi, kyi, decay)
             spin_pass(
-                omega, alpha, couple0, couple1, length, over_edge, spin_decay, stretched,
-                over_inertia, step,
+                omega_a, alpha_a, couple0, couple1, length_a, over_edge_a, spin_decay_a,
+                stretched_a, over_inertia, step,
             )  # fmt: skip
             if booked:
                 span = count * step
@@ -314,7 +321,7 @@ def advance(
             for i in range(loaded.shape[0]):
                 m = loaded[i]
                 done[0] += 0.5 * step * u * (load_x[i] * vx[m] + load_y[i] * vy[m])
-            drift_pass(x, vx, step)
-            drift_pass(y, vy, step)
-            rotate_pass(angle, omega, c, s, step)
+            drift_pass(xi, vxi, step)
+            drift_pass(yi, vyi, step)
+            rotate_pass(angle_a, omega_a, c_a, s_a, step)
     return out.shape[0]

@@ -54,7 +54,7 @@ def filter_views(rate, inside, f, s):
     n, g = rate.shape[0], REACH * s
     m = n - g
     return (
-        (rate[: n - 2 * s], rate[s : n - s], rate[2 * s :], inside[s : n - s], f[s : n - s]),
+        (rate[g - s : m - s], rate[g:m], rate[g + s : m + s], inside[g:m], f[g:m]),
         (
             rate[g:m], inside[g:m], f[g:m], f[g - s : m - s], f[g + s : m + s],
             f[g - 2 * s : m - 2 * s], f[g + 2 * s : m + 2 * s],
@@ -74,12 +74,16 @@ def laplace_filter(views, firsts, lasts, w, f, s):
     continued beyond them as an odd function, has its further differences everywhere, and those
     are one stencil; the gaps between fibres hold the continuation. `inside` is 1/4 on the inner
     points of fibres and 0 elsewhere, and the weights w are four times those of
-    `filter_stencil`.
+    `filter_stencil`. `firsts` and `lasts` are where ends of fibres stand, s of them in a row from
+    each index on; they are unsigned for the same reason as those of crossings.
     """
     difference_pass(*views[0])
-    for j in range(s, (REACH + 1) * s, s):
-        for k in range(lasts.shape[0]):
-            a, b = firsts[k], lasts[k]
-            f[a - j] = -f[a + j]
-            f[b + j] = -f[b - j]
+    width = np.uint64(s)
+    for k in range(firsts.shape[0]):
+        a, b = firsts[k], lasts[k]
+        for j in range(REACH):
+            shift = np.uint64(j + 1) * width
+            for i in range(width):
+                f[a - shift + i] = -f[a + shift + i]
+                f[b + shift + i] = -f[b - shift + i]
     stencil_pass(*views[1], w[0], w[1], w[2], w[3], w[4], w[5])

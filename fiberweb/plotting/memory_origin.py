@@ -27,6 +27,7 @@ NONE, SPRING, FIBRE, NUMERICS = (style.GREY, *style.colours(4)[:3])
 TABLE = {"color": style.INK, "marker": "_", "ms": 10, "mew": 1.4, "ls": ""}
 OFF = {"mfc": "white", "mew": 0.8}
 TINT = "#f1efe9"  # behind what is numerics
+AUTHORS_ELEMENT = 10.0  # mm
 AXIS = (-0.03, 1.03)
 COLUMNS = {  # of panel b: title and label of x
     K: ("Physics:\ncrossing spring", "$k$ (N/m)"),
@@ -100,8 +101,8 @@ def _described_series(families: dict[str, pd.DataFrame]) -> dict:
     springs, pinned, filtered = families.values()
     base = _base(springs)
     strongest = pinned[GAMMA].max()
-    off = filtered[filtered[FILTER] == 0]
-    on = filtered[filtered[FILTER] > 0].merge(off[["n", ELEMENTS, STEP]])
+    authors = _authors_numerics(filtered)
+    on, off = authors[authors[FILTER] > 0], authors[authors[FILTER] == 0]
     return {
         f"nothing: pinned crossings, γ = {base[GAMMA]:g} /s": (
             _of(pinned, **{GAMMA: base[GAMMA]}), {"color": NONE, "marker": "o"}
@@ -117,6 +118,18 @@ def _described_series(families: dict[str, pd.DataFrame]) -> dict:
         ),
         "the same, filter off": (off, {"color": NUMERICS, "marker": "^", "ls": ":"} | OFF),
     }  # fmt: skip
+
+
+def _authors_numerics(filtered: pd.DataFrame) -> pd.DataFrame:
+    """The runs of each size on the mesh nearest to the authors', at the longest step."""
+    away = (_element(filtered) - AUTHORS_ELEMENT).abs()
+    nearest = away == away.groupby(filtered["n"]).transform("min")
+    return filtered[nearest & (filtered[STEP] == filtered[STEP].max())]
+
+
+def _element(rows: pd.DataFrame) -> pd.Series:
+    """Length of the elements, mm."""
+    return 1e3 * rows["spacing_m"] / rows[ELEMENTS].astype(float)
 
 
 def _published_series(rows: pd.DataFrame) -> dict:
@@ -205,13 +218,13 @@ def _lines(ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict) -> Non
 def _filter(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
     """A capacity over the length of the elements; one marker a step, hollow without filter."""
     ax.set_facecolor(TINT)
-    rows = rows.assign(element=1e3 * rows["spacing_m"] / rows[ELEMENTS].astype(float))
+    rows = rows.assign(element=_element(rows))
     stable = rows[rows["status"] == "ok"].sort_values("element")
     for step, marker in _markers(rows).items():
         for n, frame in _of(stable, **{STEP: step}).groupby("n"):
             on, off = frame[frame[FILTER] > 0], frame[frame[FILTER] == 0]
             ax.plot(on["element"], on[name], marker=marker, ms=3.2, color=colour[n])
-            ax.plot(off["element"], off[name], marker, ms=3.2, color=colour[n], **OFF)
+            ax.plot(off["element"], off[name], marker + ":", ms=3.2, color=colour[n], **OFF)
     style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", "element"]))
 
 
