@@ -150,7 +150,7 @@ def evaluate(
     """Judge every claim in both setups.
 
     Args:
-        tables: our tables by study: "topology" and "topology_curves" (`tables.topology`,
+        tables: our tables by study: "topology" and "topology_curves" (`tables.study`,
             `tables.curves`) and those of later studies. Claims whose table is not there are
             "not computed".
         published_tables: folder with the authors' own tables, which the G claims read.

@@ -26,9 +26,10 @@ PER_SAMPLE = 20  # steps between two looks at a run
 GENTLE = 1e-4  # buckling number at which a fibre is as stiff as at rest
 HEATED = 1e4  # times: a stable run's heat depends far less than this on its step
 KNOTS = 5  # of the input in every run, at least
-BRACKET = (0.7, 1.2)  # of the predicted limit; the search goes on upwards from there
+BRACKET = (0.7, 1.2)  # of the predicted limit; the search goes on from there in both directions
+NEAREST = 0.05  # of the predicted limit, where it ends
 LOADED = 10  # times as many steps for a run under the point's own force
-FURTHEST = 20.0  # and ends here
+FURTHEST = 20.0  # and here
 RESOLUTION = {"elastica": 1e-3}  # of the bisection, relative; 1e-4 for the planar engines
 SLOWER = {"elastica": 3}  # times fewer steps for an engine a hundred times slower
 STIFF = 1e6  # N/m, the authors' crossing
@@ -39,8 +40,8 @@ PUSHED, PLANE_ELEMENTS = 0.05, 4  # s in which the force of the out-of-plane run
 
 COLUMNS = (
     "engine", "network", "spacing_m", "diameter_m", "tension_N", "force_N",
-    "crossing_stiffness", "crossing_damping", "elements_per_section", "predicted_s", "found_s",
-    "ratio", "automatic_step_status",
+    "crossing_stiffness", "crossing_damping", "elements_per_section", "predicted_s",
+    "found_loaded_s", "found_s", "ratio", "automatic_step_status",
 )  # fmt: skip
 PLANE_COLUMNS = ("buckling_number", "time", "out_of_plane_m", "in_plane_m")
 DRIFT_COLUMNS = (
@@ -104,9 +105,10 @@ def found_limit(mesh: Mesh, engine: str, predicted: float, steps: int) -> float:
     instability that the geometry limits, as bending does, shakes for ever without leaving.
     """
     low, high = (factor * predicted for factor in BRACKET)
-    calm = run_for(mesh, engine, low, steps)
-    if calm.unstable_at is not None:
-        return np.nan
+    while (calm := run_for(mesh, engine, low, steps)).unstable_at is not None:
+        low, high = BRACKET[0] * low, low
+        if low < NEAREST * predicted:
+            return np.nan
     hottest = HEATED * heat(calm)
 
     def unstable(step: float) -> bool:
@@ -141,19 +143,20 @@ def status(recording: Recording) -> str:
 def measure(point: Point, steps: int) -> tuple:
     """One row of the stability table.
 
-    The limit is looked for with a gentle force, where the network is as stiff as at rest; what
-    the point's own force does is seen at the automatic step.
+    The limit is looked for with a gentle force, where the network is as stiff as at rest, and
+    once more under the point's own, which can strain it; the prediction is of the first.
     """
     scene, steps = point.scene(), steps // SLOWER.get(point.engine, 1)
     gentle = build(point.scene(min(GENTLE, point.buckling)), point.elements)
     predicted = largest_step(gentle, point.engine)
     found = found_limit(gentle, point.engine, predicted, steps)
     mesh = build(scene, point.elements)
+    loaded = found_limit(mesh, point.engine, predicted, LOADED * steps)
     automatic = run_for(mesh, point.engine, safety(mesh.scene) * predicted, LOADED * steps)
     return (
         point.engine, f"{point.n}x{point.n}", point.spacing, point.diameter, point.tension,
-        scene.force, point.stiffness, point.damping, point.elements, predicted, found,
-        predicted / found, status(automatic),
+        scene.force, point.stiffness, point.damping, point.elements, predicted, loaded,
+        found, predicted / found, status(automatic),
     )  # fmt: skip
 
 

@@ -41,11 +41,6 @@ SORTED_BY = ("setup", "topology", "n", "spacing_m", "force_N", "tension_N", "run
 FLOAT_FORMAT = "%.10g"
 
 
-def topology(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
-    """The topology study (Fig. 1): one row a run, the columns of `COLUMNS` and no other."""
-    return rows(capacity_paths)
-
-
 def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataFrame:
     """One row for each set of capacities.
 

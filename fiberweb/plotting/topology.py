@@ -42,7 +42,7 @@ def draw(
     """Draw Fig. 1 for one setup and write it as PNG and PDF.
 
     Args:
-        table: from `tables.topology`; rows of other setups are left out. A run whose status is
+        table: from `tables.study`; rows of other setups are left out. A run whose status is
             "unstable" is drawn as an X.
         curves: from `tables.curves`, of the same runs.
         floors: from `tables.floors`, or None.

@@ -50,9 +50,10 @@ def study(tmp_path_factory):
     ]
 
 
-def test_topology_has_one_row_a_run_with_the_scene_and_the_capacities(study):
-    table = tables.topology([path for path, _ in study])
-    assert list(table.columns) == list(tables.COLUMNS)
+def test_a_study_has_one_row_a_run_with_the_scene_and_the_capacities(study):
+    table = tables.study([path for path, _ in study], ["eq3"] * 3)
+    assert list(table.columns)[: len(tables.COLUMNS) + 1] == [*tables.COLUMNS, "force_choice"]
+    assert list(table["force_choice"]) == ["eq3"] * 3
     assert list(table["run"]) == ["crosshatch-n02", "crosshatch-n04", "polygon-n06"]
     row, scored = table.iloc[1], study[1][1]
     scene = Scene.from_json(scored.attrs["scene"])
@@ -66,7 +67,7 @@ def test_topology_has_one_row_a_run_with_the_scene_and_the_capacities(study):
 
 
 def test_an_unstable_run_keeps_its_row_and_has_no_capacity(study):
-    row = tables.topology([path for path, _ in study]).iloc[0]
+    row = tables.rows([path for path, _ in study]).iloc[0]
     assert row["status"] == "unstable"
     assert row[list(tables.SCALARS)].isna().all()
 
@@ -81,7 +82,7 @@ def test_rows_takes_columns_of_a_study(study):
 
 
 def test_no_run_gives_a_table_without_rows():
-    assert list(tables.topology([]).columns) == list(tables.COLUMNS)
+    assert list(tables.rows([]).columns) == list(tables.COLUMNS)
     assert list(tables.curves([]).columns) == list(tables.CURVE_COLUMNS)
 
 
@@ -115,8 +116,8 @@ def test_floors_score_the_input_alone_by_the_scoring_of_the_setup(tmp_path, setu
 
 def test_a_table_has_the_same_bytes_whatever_the_order_of_its_rows(study, tmp_path):
     paths = [path for path, _ in study]
-    tables.write(tables.topology(paths), tmp_path / "a.csv")
-    tables.write(tables.topology(paths).iloc[::-1], tmp_path / "b.csv")
+    tables.write(tables.rows(paths), tmp_path / "a.csv")
+    tables.write(tables.rows(paths).iloc[::-1], tmp_path / "b.csv")
     content = (tmp_path / "a.csv").read_bytes()
     assert content == (tmp_path / "b.csv").read_bytes()
     assert b"\r" not in content
@@ -124,7 +125,7 @@ def test_a_table_has_the_same_bytes_whatever_the_order_of_its_rows(study, tmp_pa
 
 
 def test_read_returns_what_was_written(study, tmp_path):
-    table = tables.topology([path for path, _ in study])
+    table = tables.rows([path for path, _ in study])
     tables.write(table, tmp_path / "new" / "topology.csv")
     again = tables.read(tmp_path / "new" / "topology.csv")
     pd.testing.assert_frame_equal(again, table, rtol=1e-9, check_dtype=False)
@@ -132,10 +133,10 @@ def test_read_returns_what_was_written(study, tmp_path):
 
 def test_merge_joins_tables_of_one_kind_only(study, tmp_path):
     paths = [path for path, _ in study]
-    tables.write(tables.topology(paths[:1]), tmp_path / "published.csv")
-    tables.write(tables.topology(paths[1:]), tmp_path / "described.csv")
+    tables.write(tables.rows(paths[:1]), tmp_path / "published.csv")
+    tables.write(tables.rows(paths[1:]), tmp_path / "described.csv")
     merged = tables.merge([tmp_path / "published.csv", tmp_path / "described.csv"])
-    whole = tables.topology(paths)
+    whole = tables.rows(paths)
     pd.testing.assert_frame_equal(merged, whole, rtol=1e-9, check_dtype=False)
     tables.write(tables.curves(paths[:1]), tmp_path / "curves.csv")
     with pytest.raises(ValueError, match=r"curves.csv has the columns .* merge tables of one kind"):

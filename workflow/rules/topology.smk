@@ -34,6 +34,7 @@ rule topology_tables:
     conda:
         "../../envs/environment.yaml"
     params:
+        choices=lambda wildcards: [run.choice for run in study_runs("topology", wildcards.setup)],
         scoring=lambda wildcards: example(runs(CONFIG, "topology", wildcards.setup)).scoring,
     message:
         "Tables of the topology study, {wildcards.setup}"

@@ -8,7 +8,7 @@ from fiberweb.dataset import load, save
 
 to_log(snakemake.log[0])
 source, scoring = snakemake.input, snakemake.params.scoring
-tables.write(tables.topology(source.capacities), snakemake.output.table)
+tables.write(tables.study(source.capacities, snakemake.params.choices), snakemake.output.table)
 tables.write(tables.curves(source.capacities), snakemake.output.curves)
 tables.write(tables.floors(source.example, **scoring), snakemake.output.floors)
 example = load(source.example)
