@@ -209,6 +209,20 @@ def _planar(engine: str) -> str:
     return "cosserat" if engine == "elastica" else engine
 
 
+def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
+    """Rows of `speed_accuracy` for Exudyn, on the scenes of its own check and neither timed nor
+    scored: the error is its difference from our converged engine.
+
+    Args:
+        checked: from `exudyn_check.table`.
+    """
+    rows = checked[checked["against"] == "kirchhoff"]
+    made = rows[["engine", "network", "elements_per_section", "time_step"]].assign(
+        setup="described", trajectory_error=rows["difference"], errors_from=rows["engine"]
+    )
+    return made.reindex(columns=list(COLUMNS))
+
+
 def _published(length: float, window: int) -> list[tuple]:
     """The published setup, which PyElastica defines: its error is zero, and that of the planar
     engine is how far it departs within `COMPARED` steps."""

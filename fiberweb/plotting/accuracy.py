@@ -44,9 +44,10 @@ MIDDLE = {  # of the box: `limits.Point`'s defaults
 def draw_speed(table: pd.DataFrame, path: str | Path) -> Figure:
     """Error against CPU time, one row a network; columns of `accuracy.COLUMNS`.
 
-    The line is the Pareto front; hollow points are shorter steps on the same mesh.
+    The line is the Pareto front; hollow points are shorter steps on the same mesh. Exudyn, of
+    other networks and not timed, is left to the table.
     """
-    table = table[table["setup"] == "described"]
+    table = table[(table["setup"] == "described") & table["engine"].isin(MARKERS)]
     networks = list(dict.fromkeys(table["network"]))
     with style.applied():
         made = style.figure(style.DOUBLE, 8.0 + 55.0 * len(networks))

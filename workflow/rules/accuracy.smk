@@ -2,6 +2,8 @@
 # time something ask for all cores, so that nothing else runs beside them; a machine that is busy
 # with other things still spoils them.
 
+from importlib.util import find_spec
+
 SECTION = CONFIG.accuracy
 ABOUT = {
     "length": SECTION.length,
@@ -18,6 +20,8 @@ PHYSICS = (
     "network.py",
     "scene.py",
 )
+# not every platform has a wheel of it; then the tables are made without
+EXUDYN = ["<results>/tables/exudyn.csv"] if find_spec("exudyn") else []
 
 
 rule accuracy:
@@ -27,12 +31,40 @@ rule accuracy:
             for name in ("speed_accuracy", "model_ladder", "stability")
         ],
         "<results>/tables/energy_drift.csv",
+        EXUDYN,
+
+
+rule exudyn:
+    input:
+        code=code(
+            "accuracy.py",
+            "capacity.py",
+            "dataset.py",
+            "exudyn_*.py",
+            "ridge.py",
+            "simulation.py",
+            *PHYSICS,
+        ),
+        compiled="<results>/warmup.done",
+    output:
+        "<results>/tables/exudyn.csv",
+    log:
+        "<logs>/accuracy/exudyn.log",
+    benchmark:
+        "<benchmarks>/accuracy/exudyn.tsv"
+    conda:
+        "../../envs/environment.yaml"
+    message:
+        "Comparing both planar engines with Exudyn"
+    script:
+        "../scripts/exudyn_table.py"
 
 
 rule speed_accuracy:
     input:
         code=code("accuracy.py", "capacity.py", "dataset.py", "ridge.py", *PHYSICS),
         compiled="<results>/warmup.done",
+        exudyn=EXUDYN,
     output:
         "<results>/tables/speed_accuracy.csv",
     log:

@@ -1,10 +1,12 @@
-"""Error against cost of every engine."""
+"""Error against cost of every engine, and how far Exudyn is from ours."""
 
+import pandas as pd
 from logs import to_log
 
-from fiberweb.accuracy import speed_accuracy
+from fiberweb.accuracy import exudyn_rows, speed_accuracy
 from fiberweb.tables import write
 
 to_log(snakemake.log[0])
 table = speed_accuracy(**snakemake.params.about, workers=snakemake.threads)
-write(table, snakemake.output[0])
+exudyn = [exudyn_rows(pd.read_csv(path)) for path in snakemake.input.exudyn]
+write(pd.concat([table, *exudyn]), snakemake.output[0])

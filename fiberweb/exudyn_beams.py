@@ -2,7 +2,8 @@
 
 Planar geometrically exact beams of three nodes (shear and rotary inertia included), consistent
 mass, an implicit generalised-alpha integrator. From the project come the scene's numbers, the
-network's geometry and the input's spline.
+network's geometry and the input's spline. The only module that imports Exudyn, which not every
+platform has a wheel of: import it where it is used.
 
 References: Simo and Vu-Quoc, J. Appl. Mech. 53, 849 (1986), for the beam; Gerstmayr,
 Exudyn - a C++-based Python package for flexible multibody systems, Multibody Syst. Dyn. 60,
@@ -17,27 +18,12 @@ import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
-from fiberweb import drive, simulate
-from fiberweb.network import Network, crosshatch
+from fiberweb import drive
 from fiberweb.scene import Scene
 
 SHEAR_FACTOR = 27.0 / 28.0  # of a round section at Poisson's ratio 1/2
 # consistent mass of a three-node element of unit mass
 CONSISTENT = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30.0
-
-
-def single_fibre(spacing: float = 0.1, sections: int = 3) -> Network:
-    """One fibre, read where a crosshatch would have its crossings and midpoints, and driven in
-    the middle."""
-    length = spacing * sections
-    at = spacing * np.arange(1, sections)
-    return Network(
-        "crosshatch", 1, length, spacing, "",
-        np.array([[[0.0, 0.0], [length, 0.0]]]),
-        (tuple(enumerate(at.tolist())),),
-        np.column_stack([at, np.zeros_like(at)]),
-        0, length / 2,
-    )  # fmt: skip
 
 
 def cantilever(load: float, elements: int = 8) -> tuple[float, float]:
@@ -227,48 +213,3 @@ def _settings():
     settings.timeIntegration.verboseMode = 0
     settings.staticSolver.verboseMode = 0
     return settings
-
-
-FORCE = 0.109  # N: B = 0.7 of the 2x2 network
-SCENES = {
-    "single fibre": Scene(single_fibre(), force=5e-3, duration=0.4, damping=10.0),
-    "2x2": Scene(crosshatch(2, spacing=0.1), force=FORCE, duration=0.4, damping=10.0),
-}
-STEP, ELEMENTS = 1e-4, 8  # of the yardstick: 16 intervals between nodes on a section
-
-
-def rms_difference(one: np.ndarray, other: np.ndarray) -> float:
-    """Of displacements, relative to the rms of the second."""
-    return float(np.sqrt(((one - other) ** 2).mean() / (other**2).mean()))
-
-
-def exudyn_rows() -> list[dict]:
-    """Differences from Exudyn at crossings and midpoints over the whole run.
-
-    Returns:
-        Rows of network, code, elements (per section), time_step (s), rms_difference. The
-        kirchhoff engine is held against slender beams (see `respond`), the cosserat engine
-        against beams with all of shear and rotary inertia. Rows of Exudyn
-        are its own errors of mesh and step, and what shear and rotary inertia change.
-    """
-    rows = []
-    for network, scene in SCENES.items():
-        full = respond(scene, ELEMENTS, STEP)
-        slender = respond(scene, ELEMENTS, STEP, slender=True)
-
-        def add(code, elements, step, one, other, network=network):
-            rows.append(
-                dict(network=network, code=code, elements=elements, time_step=step,
-                     rms_difference=rms_difference(one, other))
-            )  # fmt: skip
-
-        half = ELEMENTS // 2
-        add("exudyn", half, STEP, respond(scene, half, STEP), full)
-        add("exudyn", ELEMENTS, 2 * STEP, respond(scene, ELEMENTS, 2 * STEP), full)
-        add("exudyn slender", ELEMENTS, STEP, slender, full)
-        for engine, yardstick in (("kirchhoff", slender), ("cosserat", full)):
-            for elements in (4, 8, 16):
-                response = simulate(scene, engine=engine, elements_per_section=elements)
-                add(engine, elements, response.attrs["time_step"],
-                    response.displacement.values, yardstick)  # fmt: skip
-    return rows
