@@ -1,9 +1,9 @@
 """What accuracy costs, and what each simplification changes.
 
 Errors are against the converged solution of the described setup: the fourth-order engine at 16
-and 32 elements per section, extrapolated (Richardson) in the trajectories; at 8 and 16 in the
-capacities. Trajectory error: rms of the difference over all readouts, directions and instants,
-over the rms of the reference. Time: of this process's CPU, in windows of its own.
+and 32 elements per section, extrapolated (Richardson). Trajectory error: rms of the difference
+over all readouts, directions and instants, over the rms of the reference. Time: of this process's
+CPU, in windows of its own.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ FINEST = 32  # elements per section of the finest run
 TIMED = 0.4  # s of CPU in a timing window of a planar engine, at least
 REPEATS = 3  # windows; the fastest counts
 COMPARED = 20_000  # steps over which the planar Cosserat engine is held against PyElastica
+AUTHORS_ELEMENT = 10e-3  # m
 STIFF = 1e6  # N/m, the authors' crossing: stiffer than the fibres by far
 
 COLUMNS = (
@@ -158,8 +159,17 @@ def cases(n: int, length: float, buckling: float) -> list[Case]:
     listed += [Case("kirchhoff", elements=4, share=share, **about) for share in (0.45, 0.225)]
     listed += [Case("cosserat", elements=4, **about)]
     listed += [Case("cosserat", elements=8, **about)] if n < 8 else []
+    authors = [4, 8, None] if n < 8 else [4, None]
+    listed += [Case("elastica", elements=e, step=AUTHORS_STEP, **about) for e in authors[:-1]]
     listed += [Case(e, elements=None, step=AUTHORS_STEP, **about) for e in ("cosserat", "elastica")]
     return listed
+
+
+def planar(case: Case) -> Case:
+    """The case whose errors stand for one: the cosserat engine for PyElastica, and for the
+    authors' mesh the nearest with crossings on nodes, whose places 10 mm elements round."""
+    elements = case.elements or round(case.mesh(1.0).scene.network.spacing / AUTHORS_ELEMENT)
+    return replace(case, engine=_planar(case.engine), elements=elements)
 
 
 def speed_accuracy(
@@ -169,7 +179,7 @@ def speed_accuracy(
     """Error against cost; columns: `COLUMNS`.
 
     PyElastica's errors are those of the cosserat engine at the same mesh and step, which follows
-    it to round-off (`errors_from` says so).
+    it to round-off (`errors_from` says so; see also `planar`).
 
     Args:
         networks: N of the crosshatches.
@@ -184,25 +194,26 @@ def speed_accuracy(
     for n in networks:
         listed = cases(n, length, buckling)
         costs = [case.cost(window) for case in listed]
-        run = [replace(case, engine=_planar(case.engine)) for case in listed]
+        run = [planar(case) for case in listed]
         about = {"n": n, "length": length, "buckling": buckling}
         pair = [Case("kirchhoff", elements=e, **about) for e in (FINEST // 2, FINEST)]
         at = {case: i for i, case in enumerate(dict.fromkeys(run + pair))}
         distinct = list(at)
         with ThreadPoolExecutor(workers) as pool:
             moved = list(pool.map(lambda case: case.trajectory(seconds), distinct))
-            scored = list(pool.map(lambda case: case.capacities(duration), distinct[: len(at) - 1]))
+            scored = list(pool.map(lambda case: case.capacities(duration), distinct))
         converged = extrapolate(*(moved[at[case]] for case in pair))
-        best = extrapolate(*(scored[at[replace(pair[0], elements=FINEST // k)]] for k in (4, 2)))
+        best = extrapolate(*(scored[at[case]] for case in pair))
         yardstick = costs[-1][1]
         for case, alias, (step, cpu, ns) in zip(listed, run, costs):
             c_nl, c_m = np.abs(scored[at[alias]] - best)
             error = difference(moved[at[alias]], converged)
             frames.append(
                 (case.engine, case.setup, f"{n}x{n}", case.elements or "authors", step, cpu, ns,
-                 error, c_nl, c_m, yardstick / cpu, alias.engine)
+                 error, c_nl, c_m, yardstick / cpu, f"{alias.engine}, {alias.elements} a section")
             )  # fmt: skip
-    return pd.DataFrame(frames + _published(length, window), columns=COLUMNS)
+        frames += _published(n, length, window)
+    return pd.DataFrame(frames, columns=COLUMNS)
 
 
 def _planar(engine: str) -> str:
@@ -223,17 +234,17 @@ def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
     return made.reindex(columns=list(COLUMNS))
 
 
-def _published(length: float, window: int) -> list[tuple]:
+def _published(n: int, length: float, window: int) -> list[tuple]:
     """The published setup, which PyElastica defines: its error is zero, and that of the planar
     engine is how far it departs within `COMPARED` steps."""
     about = {"elements": None, "length": length, "setup": "published", "step": AUTHORS_STEP}
-    pair = [Case(engine, 4, **about) for engine in ("cosserat", "elastica")]
+    pair = [Case(engine, n, **about) for engine in ("cosserat", "elastica")]
     compared = COMPARED * AUTHORS_STEP
     planar, spatial = (case.trajectory(compared) for case in pair)
     errors = [(difference(planar, spatial), np.nan, np.nan, "elastica"), (0.0, 0.0, 0.0, "itself")]
     costs = [case.cost(window) for case in pair]
     return [
-        (case.engine, "published", "4x4", "authors", *cost, *error[:3], costs[1][1] / cost[1],
+        (case.engine, "published", f"{n}x{n}", "authors", *cost, *error[:3], costs[1][1] / cost[1],
          error[3])
         for case, cost, error in zip(pair, costs, errors)
     ]  # fmt: skip

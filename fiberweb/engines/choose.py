@@ -8,10 +8,10 @@ from fiberweb.scene import Scene
 ENGINES = ("kirchhoff", "cosserat", "elastica")
 ACCURACIES = {"draft": 2, "standard": 4, "fine": 8, "reference": 16}  # elements per section
 SAFETY = 0.9  # of the linear limit: compression and tension stiffen a fibre a little
-STUBBIEST = 5.0  # spacing in diameters at which leaving out shear costs 0.18 (see `explain`)
 # The same above a share of EA in force or tension. Under load runs were found to end at 0.83 to
 # 1.0 of the linear limit (found_loaded_s of the stability table).
 VIOLENT = {1e-3: 0.7, 1e-2: 0.4}
+STUBBIEST = 5.0  # spacing in diameters at which leaving out shear costs 0.18 (see `explain`)
 
 
 def resolve(
@@ -52,9 +52,9 @@ def resolve(
     engine = engine or ("cosserat" if published else "kirchhoff")
     if engine == "kirchhoff" and not given and stubby(scene):
         raise ValueError(
-            f"spacing = {scene.network.spacing:g} m: sections of fewer than {STUBBIEST:g} diameters "
-            f"({scene.diameter:g} m) shear, which the kirchhoff engine leaves out; take longer "
-            "ones, or engine = 'cosserat'"
+            f"spacing = {scene.network.spacing:g} m: a section shorter than {STUBBIEST:g} "
+            f"diameters of {scene.diameter:g} m shears, which the kirchhoff engine leaves out; "
+            "take a longer one, or engine = 'cosserat'"
         )
     if not published and elements_per_section is None:
         elements_per_section = ACCURACIES[accuracy or "standard"]

@@ -103,11 +103,11 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     decay = np.exp(-scene.damping * step)
     scalars = (scene.drive_rate, scene.tension_ramp, step, limit, decay)
     inner_nodes, inner_elements = filtered_points(layout)
-    first, last = mesh.first[:-1], mesh.first[1:] - 1
+    ends = (strip.place[layout.at[at]] for at in (mesh.first[:-1], mesh.first[1:] - 1))
     filtering = (
         scene.filter_order, 4.0 * filter_stencil(scene.filter_order),
         *packed(0.25 * inner_nodes[strip.nodes], 0.25 * inner_elements[strip.edges]),
-        *(strip.place[layout.at[ends]][:: strip.stride].astype(np.uint64) for ends in (first, last)),
+        *(rows[:: strip.stride].astype(np.uint64) for rows in ends),
     )  # fmt: skip
 
     def advance_to(first, displacement, energy):
@@ -198,7 +198,7 @@ def advance(
         node_arrays, element_arrays, books: see `coefficients`.
         ties: joints, their stiffness and damping.
         filtering: order and weights of the filter, where it acts on nodes and on elements, and
-            the first and last node of each fibre.
+            where rows of first and of last nodes of fibres begin.
         drive, readouts, scalars, stride, per_sample, first, out, energy: as in the kirchhoff
             engine.
 
@@ -227,7 +227,8 @@ def advance(
     inner, before = slice(b.start, a.stop), slice(low, a.stop - stride)
     x0, x1, y0, y1, vx0, vx1, vy0, vy1 = x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b]
     angle_a, omega_a, c_a, s_a, alpha_a = angle[a], omega[a], c[a], s[a], alpha[a]
-    edge_a, over_edge_a, spin_decay_a, stretched_a = edge[a], over_edge[a], spin_decay[a], stretched[a]
+    edge_a, over_edge_a = edge[a], over_edge[a]
+    spin_decay_a, stretched_a = spin_decay[a], stretched[a]
     fx_a, fy_a, length_a, couple0, couple1 = fx[a], fy[a], length[a], couple[a], couple[b]
     angle0, angle1, length0, length1 = angle[before], angle[inner], length[before], length[inner]
     fx0, fx1, fy0, fy1 = fx[before], fx[inner], fy[before], fy[inner]

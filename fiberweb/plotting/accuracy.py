@@ -170,9 +170,9 @@ def _growth(axes, plane: pd.DataFrame) -> None:
         ax.set_xlabel("Time (s)")
 
 
-def draw_stability(table: pd.DataFrame, path: str | Path) -> Figure:
-    """Found over predicted limits along each direction of the box, and all of them at once;
-    columns of `limits.COLUMNS`."""
+def draw_stability(table: pd.DataFrame, drift: pd.DataFrame, path: str | Path) -> Figure:
+    """Found over predicted limits along each direction of the box, and all of them at once, with
+    the drift of energy in words; columns of `limits.COLUMNS` and `limits.DRIFT_COLUMNS`."""
     with style.applied():
         made = style.figure(style.DOUBLE, 130.0)
         axes = made.subplots(3, 3)
@@ -181,6 +181,7 @@ def draw_stability(table: pd.DataFrame, path: str | Path) -> Figure:
             _sweep(ax, table, column, label, unit)
         for ax, engine in zip(axes.flat[7:], ("kirchhoff", "cosserat")):
             _ratios(ax, table, engine)
+            _drift(ax, drift[drift["engine"] == engine])
         handles = [
             axes[0, 0].plot([], [], MARKERS[e], color=COLOUR[e], mfc="none", mew=0.8)[0]
             for e in MARKERS
@@ -208,6 +209,8 @@ def _agreement(ax: Axes, table: pd.DataFrame) -> None:
 def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) -> None:
     """The points that differ from the middle of the box in this column alone, and in what
     follows it: the force of a buckling number."""
+    # under the force that is swept; elsewhere under a gentle one, which the prediction is for
+    found = "found_loaded_s" if column == "force_N" else "found_s"
     for engine in ("cosserat", "kirchhoff"):
         rows = table[table["engine"] == engine]
         same = {name: rows[name] == value for name, value in MIDDLE.items() if name != column}
@@ -217,9 +220,7 @@ def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) 
         rows = rows[alike].sort_values([column, "predicted_s"])
         x = rows[column] * unit
         ax.plot(x, 1e6 * rows["predicted_s"], color=COLOUR[engine], lw=0.8)
-        ax.plot(
-            x, 1e6 * rows["found_s"], MARKERS[engine], color=COLOUR[engine], mfc="none", mew=0.8
-        )
+        ax.plot(x, 1e6 * rows[found], MARKERS[engine], color=COLOUR[engine], mfc="none", mew=0.8)
         bad = rows["automatic_step_status"] != "ok"
         ax.plot(x[bad], 1e6 * rows.loc[bad, "predicted_s"], **style.UNSTABLE)
     ax.set(yscale="log", xscale="log", xlabel=label, ylabel="Limit (µs)")
@@ -244,3 +245,8 @@ def _ratios(ax: Axes, table: pd.DataFrame, engine: str) -> None:
     )  # fmt: skip
     ax.set(xlabel=f"Points, {engine}", ylabel="Predicted / found")
     ax.set_ylim(min(0.85, rows["ratio"].min() - 0.05), 1.05)
+
+
+def _drift(ax: Axes, drift: pd.DataFrame) -> None:
+    for steps, change in zip(drift["steps"], drift["drift"]):
+        ax.set_title(f"Energy drift {change:.0e} in {steps:.0e} steps", loc="left")

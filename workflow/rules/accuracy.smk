@@ -158,5 +158,5 @@ rule accuracy_figure:
 FIGURES = {
     "speed_accuracy": ["speed_accuracy"],
     "model_ladder": ["model_ladder", "out_of_plane"],
-    "stability": ["stability"],
+    "stability": ["stability", "energy_drift"],
 }
