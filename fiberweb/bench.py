@@ -6,10 +6,13 @@ displacement over the first second, rms over the rms of the converged answer (ki
 elements a section); PyElastica's is that of `cosserat` on the same mesh and step, which equals
 it to round-off (tests/physics/test_equality.py). Ours comes twice where the meshes differ: on the
 coarsest mesh that is no worse than PyElastica's, and at the accuracy that runs have by default.
+Then our kernels over the sizes of a network, the scoring of the largest run (912 signals, 25 000
+samples, 261 targets; noise for readouts), and what a job costs beside its physics.
 """
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -29,6 +32,7 @@ WINDOWS = 5
 OLD_STEPS = 300  # of PyElastica in a window
 NEW_SECONDS = 5.0  # simulated by ours in a window
 SECONDS = 100.0  # of a run of the paper
+SIZES = (2, 4, 6, 8, 10, 12, 16)  # N of the networks whose kernels are timed
 FINEST = 16  # elements a section of the converged answer
 HEADER = (
     f"{'setup':<10} {'network':<8} {'engine':<10} {'elements':>8} {'step us':>8} {'us/step':>9} "
@@ -48,6 +52,13 @@ def main() -> None:
         scene = Scene(crosshatch(n, length=0.5), setup)
         for elements in meshes(scene):
             compare(scene, engine, elements)
+    print("\nkernels, ns an element and step (elements):")
+    for setup in ("described", "published"):
+        print(f"  {setup:<10}" + "".join(f"{kernel(setup, n):>16}" for n in SIZES))
+    print()
+    for scoring in ("clean", "published"):
+        seconds, memory = scored(scoring)
+        print(f"{scoring} scoring of 12x12: {seconds:.1f} s, {memory:.2f} GB")
     print(f"\nstart, import, load compiled kernels, write: {job_overhead():.2f} s a run")
 
 
@@ -124,6 +135,46 @@ def _row(scene, engine, mesh, steps, per_step, error, ratio) -> None:
         f"{100 * error:>8.2f} {ratio:>7.0f}",
         flush=True,
     )
+
+
+def kernel(setup: str, n: int) -> str:
+    """ns an element and step of a whole run with the setup's own engine and mesh, median."""
+    scene = Scene(crosshatch(n, length=0.5), setup, duration=NEW_SECONDS / n)
+    numerics = resolve(scene)
+    mesh, load = build(scene, numerics.elements_per_section), engines.load(numerics.engine)
+    load.integrate(mesh, numerics)
+    times = []
+    for _ in range(WINDOWS):
+        start = time.process_time()
+        load.integrate(mesh, numerics)
+        times.append(time.process_time() - start)
+    steps = steps_per_sample(scene, numerics.time_step) * scene.samples
+    return f"{1e9 * median(times) / steps / mesh.elements:.2f} ({mesh.elements})"
+
+
+def scored(scoring: str) -> tuple[float, float]:
+    """CPU seconds (median) and peak memory (GB) of a process that scores the largest run."""
+    code = (
+        "import resource, time\n"
+        "import numpy as np\n"
+        "from fiberweb.capacity import score_arrays\n"
+        "from fiberweb.drive import spline\n"
+        "time_s = np.arange(25_000) / 250.0\n"
+        "readouts = np.random.default_rng(0).standard_normal((25_000, 912), dtype=np.float32)\n"
+        "start = time.process_time()\n"
+        f"score_arrays(spline(1234, 100.0, 5.0)(time_s), readouts, 250.0, scoring={scoring!r})\n"
+        "taken = time.process_time() - start\n"
+        "print(taken, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", code], check=True, capture_output=True, text=True,
+            env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        ).stdout.split()
+        for _ in range(3)
+    ]  # fmt: skip
+    seconds, kilobytes = zip(*found)
+    return median(map(float, seconds)), 1e-6 * max(map(float, kilobytes))
 
 
 def job_overhead() -> float:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fiberweb import engines
+from fiberweb.accuracy import Case, difference, extrapolate
 from fiberweb.engines.base import Numerics
 from fiberweb.engines.stability import largest_step
 from fiberweb.mesh import build
@@ -95,3 +96,15 @@ def test_order_in_time_step_of_a_kirchhoff_network(stiffness):
         return recording.displacement
 
     assert order_in_time(moved) == pytest.approx(2, abs=0.2)
+
+
+@pytest.mark.slow
+def test_four_elements_a_section_are_enough_before_buckling():
+    """B = 0.8, 4x4: within 2 % of the trajectories and 0.01 in both capacities of the answer
+    extrapolated from 8 and 16 elements. A run of 30 s scores every capacity the same way."""
+    about = {"n": 4, "buckling": 0.8}
+    runs = [Case("kirchhoff", elements=e, **about) for e in (4, 8, 16)]
+    moved = [case.trajectory(1.0) for case in runs]
+    assert difference(moved[0], extrapolate(*moved[1:])) < 0.02
+    scored = [case.capacities(30.0) for case in runs]
+    assert np.abs(scored[0] - extrapolate(*scored[1:])).max() < 0.01
