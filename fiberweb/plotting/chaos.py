@@ -80,17 +80,21 @@ def _separations(ax: Axes, apart: pd.DataFrame, rows: pd.DataFrame) -> None:
         ax.plot(pair["time_s"], pair["separation_m"], color=colour, lw=0.7, label=f"{number:.3g}")
     ax.set(yscale="log", xlabel="Time (s)", ylabel="Separation (m)")
     ax.margins(x=0.01)
-    length = (rows["spacing_m"] * (rows["n"] + 1)).max()
-    ax.axhspan(ax.get_ylim()[0], ROUND_OFF * length, color=style.FAINT, alpha=0.45, lw=0, zorder=0)
-    ax.annotate(
-        "round-off:\nequal twins", (1.01, ROUND_OFF * length), va="top",
-        xycoords=("axes fraction", "data"),
-    )  # fmt: skip
-    ax.set_ylim(ax.get_ylim()[0], None)
+    _round_off(ax, ROUND_OFF * (rows["spacing_m"] * (rows["n"] + 1)).max())
     legend = ax.legend(
         title=f"Buckling\nnumber {parts.BUCKLING}", loc="upper left", bbox_to_anchor=(1.0, 1.0)
     )
     legend.set(alignment="left")
+
+
+def _round_off(ax: Axes, level: float) -> None:
+    """A band from the foot of the axes up to a level (m), with its name beside it."""
+    foot = min(ax.get_ylim()[0], level / 100)  # room for the name, wherever the curves end
+    ax.axhspan(foot, level, color=style.FAINT, alpha=0.45, lw=0, zorder=0)
+    ax.annotate(
+        "round-off:\nequal twins", (1.01, level), va="top", xycoords=("axes fraction", "data")
+    )
+    ax.set_ylim(foot, None)
 
 
 def _over_buckling(ax: Axes, rows: pd.DataFrame) -> None:

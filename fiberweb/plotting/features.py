@@ -156,7 +156,7 @@ def _scores(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame) -> None:
             _bars(ax, table[table["force_N"] == force], names, column, colour[force], shift[force])
         _shares(ax, table[table["verdict"]], names, column)
         parts.letter(ax, letter, f"{parts.CAPACITIES[column]} of each group", TITLE)
-        ax.set(ylabel=symbol, ylim=(0, None))
+        ax.set(ylabel=symbol, ylim=(0.0, sweep.top(table, floors, column)))
         sweep.floors(ax, floors, column)
     ranks, counts = axes[2], table.drop_duplicates("group").set_index("group")["n_signals"]
     for force in forces:

@@ -196,7 +196,7 @@ def _traces(ax: Axes, found: xr.Dataset, table: pd.DataFrame, shown: Readout, or
         style.mark_unstable(ax, [time.mean()])
     else:
         row = table.set_index(["run", "readout", "timing"]).loc[(shown.run, shown.name, SHOWN)]
-        ax.set_title(rf"RMSE / $\sigma_y$ = {row['nrmse']:.2f}", loc="right")
+        ax.set_title(f"NRMSE = {row['nrmse']:.2f}", loc="right")
     ax.margins(x=0.01)
     ax.set_xlabel("Time (s)")
 

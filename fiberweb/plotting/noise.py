@@ -109,5 +109,5 @@ def _handles(rows: pd.DataFrame, colour: dict) -> dict:
     handles["no noise"] = Line2D([], [], color=style.INK, marker="D", ms=3.0, ls="")
     bar = Line2D([], [], marker="|", ms=7, mew=0.8, ls="", color=style.INK)
     handles["± standard error"] = bar
-    handles["standard deviation of the median readout"] = Patch(**AMPLITUDES)
+    handles["sd of the median readout"] = Patch(**AMPLITUDES)
     return handles | parts.floor_and_unstable((rows["status"] == "unstable").any())
