@@ -94,7 +94,7 @@ def _round_off(ax: Axes, level: float) -> None:
     ax.annotate(
         "round-off:\nequal twins", (1.01, level), va="top", xycoords=("axes fraction", "data")
     )
-    ax.set_ylim(foot, None)
+    ax.set_ylim(foot, max(ax.get_ylim()[1], 1e8 * level))
 
 
 def _over_buckling(ax: Axes, rows: pd.DataFrame) -> None:

@@ -86,10 +86,10 @@ def draw(table: pd.DataFrame, found: xr.Dataset, setup: str, path: str | Path) -
             _errors(column[0], found, readouts, order)
             for ax, measure in zip(column[1:-1], MEASURES, strict=True):
                 _bars(ax, of_order, readouts, measure)
-            column[-2].set_xticklabels([one.label for one in readouts])
+            _labels(column[-2], readouts)
             _traces(column[-1], found, of_order, shown, order)
         _titles(axes[:, 0], shown)
-        axes[-2, len(orders) // 2].set_xlabel(READOUTS)
+        axes[-2, 0].set_xlabel(READOUTS, loc="left")
         figure.align_ylabels(axes[:, 0])
         parts.key(figure, _handles(table), ncols=4)
         style.save(figure, path)
@@ -152,7 +152,7 @@ def _errors(ax: Axes, found: xr.Dataset, readouts: list[Readout], order: int) ->
         ax.plot(place, middle, "o", color=one.inner, ms=2.2)
     ax.set_title(f"NARMA-{order}", loc="right")
     _categories(ax, readouts)
-    ax.set_xticklabels([one.label for one in readouts])
+    _labels(ax, readouts)
 
 
 def _categories(ax: Axes, readouts: list[Readout]) -> None:
@@ -160,9 +160,15 @@ def _categories(ax: Axes, readouts: list[Readout]) -> None:
     ax.axhline(0.0, color=style.FAINT, lw=0.6, zorder=0)
     ax.set_xlim(-0.6, len(readouts) - 0.4)
     ax.set_xticks(range(len(readouts)), [""] * len(readouts))
-    rotation = 0 if len(readouts) <= UPRIGHT else 90
-    ax.tick_params(axis="x", length=0, labelsize=6, rotation=rotation)
+    ax.tick_params(axis="x", length=0, labelsize=6)
     ax.spines["bottom"].set_visible(False)
+
+
+def _labels(ax: Axes, readouts: list[Readout]) -> None:
+    """Names of the readouts, upright in two lines or, if there are many, turned in one."""
+    upright = len(readouts) <= UPRIGHT
+    labels = [one.label if upright else one.label.replace("\n", " ") for one in readouts]
+    ax.set_xticks(range(len(readouts)), labels, rotation=0 if upright else 90)
 
 
 def _bars(ax: Axes, table: pd.DataFrame, readouts: list[Readout], measure: str) -> None:
