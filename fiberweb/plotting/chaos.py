@@ -13,10 +13,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fiberweb.chaos import ROUND_OFF
 from fiberweb.plotting import parts, style, sweep
 
 SHOWN = 6  # pairs whose separation is drawn
+# of the network's length, as in fiberweb.chaos, from which a figure need not be drawn again
+ROUND_OFF = 100 * np.finfo(float).eps
 CONSISTENCY = {"marker": "o", "ms": 3, "lw": 0.8, "color": style.colours(2)[0]}
 SATURATION = {"marker": "s", "ms": 3, "lw": 0.8, "color": style.colours(2)[1]}
 BUCKLING = {"color": style.FAINT, "lw": 0.8}

@@ -14,7 +14,7 @@ from matplotlib.colors import ListedColormap, Normalize, PowerNorm
 from matplotlib.figure import FigureBase
 
 from fiberweb.centre_lines import along
-from fiberweb.plotting import parts, style
+from fiberweb.plotting import style
 from fiberweb.scene import Scene
 
 POINTS = 12  # drawn on each section
@@ -73,7 +73,7 @@ def scene_of(data: xr.Dataset) -> Scene:
 
 def force_of(scene: Scene) -> str:
     """The force as its buckling number, a label."""
-    return f"{parts.BUCKLING} = {scene.buckling_number:.3g}"
+    return rf"$\mathcal{{B}}$ = {scene.buckling_number:.3g}"
 
 
 def norm_of(films: Sequence[Film]) -> Normalize:

@@ -194,6 +194,7 @@ def test_the_figure_marks_unstable_pairs_in_every_panel_over_b(tmp_path):
     figure = plotting.draw(given, "described", tmp_path / "chaos.png")
     assert (tmp_path / "chaos.pdf").exists()
     assert_legible(figure)
+    assert plotting.ROUND_OFF == chaos.ROUND_OFF
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
     assert [list(mark.get_xdata()) for mark in marks] == [[5.0]] * 4
     with pytest.raises(ValueError, match="no run of the published setup"):
