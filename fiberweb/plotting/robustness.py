@@ -92,8 +92,9 @@ def _mean_of_seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict, place:
             capsize=CAP + 0.5, **MEAN,
         )  # fmt: skip
         below = max(one["mean"], below + LINE)
+        known = one[["sd", "se"]].dropna()  # a single seed has no spread, a short run no error
         ax.annotate(
-            f"sd {one['sd']:.3f}, se {one['se']:.3f}", (place, below), (7, 0),
+            ", ".join(f"{key} {value:.3f}" for key, value in known.items()), (place, below), (7, 0),
             textcoords="offset points", va="center", fontsize=6,
         )  # fmt: skip
 

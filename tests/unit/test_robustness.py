@@ -77,5 +77,9 @@ def test_the_figure_gives_the_spread_of_seeds_beside_their_errors(alphas, tmp_pa
     assert_legible(figure)
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable" and artist.get_xdata())
     assert [list(mark.get_xdata()) for mark in marks] == [[2], [2]]
+    given["robustness"] = seeds[seeds["seed"] == 2]
+    alone = plotting.draw(given, "described", tmp_path / "alone.png")
+    said = [text.get_text() for ax in alone.axes for text in ax.texts]
+    assert "se 0.013" in said and not any("nan" in text for text in said)
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(given, "published", tmp_path / "none.png")
