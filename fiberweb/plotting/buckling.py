@@ -52,7 +52,7 @@ def draw(responses: Sequence[xr.Dataset], seconds: float, path: str | Path) -> F
     middle = widest(bulged)
     instants = _snapshots(responses[0], middle)
     films = [film_of(data, instants) for data in responses]
-    heights = [42.0] * len(films) + [56.0]
+    heights = [45.0] * len(films) + [56.0]
     with style.applied():
         made = style.figure(style.DOUBLE, sum(heights))
         rows = list(made.subfigures(len(heights), 1, height_ratios=heights))
@@ -145,8 +145,8 @@ def _motion(
             gone = float(data.attrs.get("unstable_at", np.inf))
             style.mark_unstable(ax, [max(gone, time[span][0])] if gone < time[span][-1] else [])
     driven.legend(loc="upper right", bbox_to_anchor=(1.0, 1.25), ncols=len(bulged))
-    driven.set(ylabel="driven point\ny (mm)")
-    column.set(xlabel="time (s)", ylabel="column\nbulge (mm)", xlim=time[span][[0, -1]])
+    driven.set(ylabel="Driven point\n$y$ (mm)")
+    column.set(xlabel="Time (s)", ylabel="Column\nbulge (mm)", xlim=time[span][[0, -1]])
     part.align_ylabels()
 
 
@@ -160,7 +160,7 @@ def _onset(part: FigureBase, responses: Sequence[xr.Dataset], bulged: Sequence[n
             mew=0, label=force_of(scene_of(data)), rasterized=True, zorder=-len(ax.lines),
         )  # fmt: skip
     ax.axvline(1.0, color=style.GREY, lw=0.7, ls=(0, (4, 2)), zorder=-9)
-    ax.set(xlabel="momentary load of the columns, −B u", ylabel="widest bulge (mm)")
+    ax.set(xlabel="Momentary load of the columns, $-\\mathcal{B}u$", ylabel="Widest bulge (mm)")
     ax.legend(loc="upper left", markerscale=4)
 
 
@@ -174,7 +174,7 @@ def _gif(film: Film, limits: np.ndarray, norm: Normalize, duration: int, path: s
         network = Frame(upper, film, limits, norm)
         colour_bar(made, upper, norm)
         lower.plot(film.time, film.u, color=style.GREY)
-        lower.set(xlabel="time (s)", ylabel="input u", xlim=film.time[[0, -1]])
+        lower.set(xlabel="Time (s)", ylabel="Input $u$", xlim=film.time[[0, -1]])
         (now,) = lower.plot([], [], "o", color=style.DRIVE, ms=3.5, clip_on=False)
         clock = upper.set_title(film.caption(0))
         moving = (network.fibres, network.driven, now, clock)

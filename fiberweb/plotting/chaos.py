@@ -11,11 +11,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from fiberweb.plotting import style, sweep
+from fiberweb.plotting import parts, style, sweep
 
 SHOWN = 6  # pairs whose separation is drawn
-KILO = 1e3  # m to mm
+# of the network's length, as in fiberweb.chaos, from which a figure need not be drawn again
+ROUND_OFF = 100 * np.finfo(float).eps
+CONSISTENCY = {"marker": "o", "ms": 3, "lw": 0.8, "color": style.colours(2)[0]}
+SATURATION = {"marker": "s", "ms": 3, "lw": 0.8, "color": style.colours(2)[1]}
+BUCKLING = {"color": style.FAINT, "lw": 0.8}
+# caps wider than the markers, or small bars would not show
+POINTS = {"color": style.INK, "marker": "o", "ms": 2.4, "lw": 0.8, "elinewidth": 0.7, "capsize": 2}
 
 
 def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
@@ -36,21 +43,26 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     rows = sweep.rows_of(tables["chaos_rates"], "chaos_rates", setup).sort_values("buckling_number")
     apart = tables["chaos_separations"]
     apart = apart[apart["setup"] == setup]
-    floors = tables["chaos_floors"]
+    bad = (rows[["status", "twin_status"]] == "unstable").any(axis=1)
     with style.applied():
-        figure = style.figure(style.DOUBLE, 120.0)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[58, 62])
-        style.letter(top, "a", "Separation of twin runs, rms over readouts")
-        _separations(top.subplots(), apart, _shown(rows["buckling_number"]))
-        parts = bottom.subfigures(1, 3, width_ratios=[1, 1, 1.12])
-        titles = ("Growth of a small separation", "Twins over the last half", "Capacities")
-        panels = (_rate, _consistency, lambda ax, rows: _capacities(ax, rows, floors))
-        for part, letter, title, panel in zip(parts, "bcd", titles, panels, strict=True):
-            style.letter(part, letter, title)
-            ax = part.subplots()
+        figure = style.figure(style.DOUBLE, 122.0)
+        top, bottom = figure.subfigures(2, 1, height_ratios=[56, 66])
+        style.letter(top, "a", f"Separation of twin runs, rms over readouts ({setup} setup)")
+        _separations(top.subplots(), apart, rows)
+        axes = bottom.subplots(1, 4)
+        titles = ("Growth rate", "Twins, last half", *parts.CAPACITIES.values())
+        for ax, letter, title in zip(axes, "bcde", titles, strict=True):
+            parts.letter(ax, letter, title)
             _over_buckling(ax, rows)
-            panel(ax, rows)
-            _unstable(ax, rows)
+        _rate(axes[0], rows)
+        _consistency(axes[1], rows)
+        for ax, (name, symbol) in zip(axes[2:], sweep.TOTALS.items(), strict=True):
+            _points(ax, rows, name, f"{name}_se")
+            ax.set(ylim=(-0.03, 1.03), ylabel=symbol)
+            sweep.floors(ax, tables["chaos_floors"], name)
+        for ax in axes:
+            style.mark_unstable(ax, list(rows.loc[bad, "buckling_number"]))
+        parts.key(bottom, _handles(bad.any()), ncols=2, columnspacing=3.0)
         style.save(figure, path)
     return figure
 
@@ -62,63 +74,62 @@ def _shown(buckling: pd.Series) -> list[float]:
     return [listed[at] for at in picked]
 
 
-def _separations(ax: Axes, apart: pd.DataFrame, shown: list[float]) -> None:
-    for number, colour in zip(shown, style.colours(len(shown)), strict=True):
-        rows = apart[apart["buckling_number"] == number]
-        ax.plot(rows["time_s"], rows["separation_m"], color=colour, lw=0.7, label=f"{number:.3g}")
+def _separations(ax: Axes, apart: pd.DataFrame, rows: pd.DataFrame) -> None:
+    """Separation of some pairs over time, and where it is but round-off."""
+    for number, colour in parts.colour_of(_shown(rows["buckling_number"])).items():
+        pair = apart[apart["buckling_number"] == number]
+        ax.plot(pair["time_s"], pair["separation_m"], color=colour, lw=0.7, label=f"{number:.3g}")
     ax.set(yscale="log", xlabel="Time (s)", ylabel="Separation (m)")
     ax.margins(x=0.01)
-    ax.legend(
-        title="Buckling\nnumber B", loc="center left", bbox_to_anchor=(1.0, 0.5), reverse=True
+    _round_off(ax, ROUND_OFF * (rows["spacing_m"] * (rows["n"] + 1)).max())
+    legend = ax.legend(
+        title=f"Buckling\nnumber {parts.BUCKLING}", loc="upper left", bbox_to_anchor=(1.0, 1.0)
     )
+    legend.set(alignment="left")
+
+
+def _round_off(ax: Axes, level: float) -> None:
+    """A band from the foot of the axes up to a level (m), with its name beside it."""
+    foot = min(ax.get_ylim()[0], level / 100)  # room for the name, wherever the curves end
+    ax.axhspan(foot, level, color=style.FAINT, alpha=0.45, lw=0, zorder=0)
+    ax.annotate(
+        "round-off:\nequal twins", (1.01, level), va="top", xycoords=("axes fraction", "data")
+    )
+    ax.set_ylim(foot, max(ax.get_ylim()[1], 1e8 * level))
 
 
 def _over_buckling(ax: Axes, rows: pd.DataFrame) -> None:
     """A log axis of B with its buckling at 1."""
-    ax.set(xscale="log", xlabel="Buckling number B")
+    ax.set(xscale="log", xlabel=f"Buckling number {parts.BUCKLING}")
     ticks = [0.2, 0.5, 1, 2, 5]
     ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     ax.minorticks_off()
     numbers = rows["buckling_number"]
     ax.set_xlim(0.85 * numbers.min(), 1.15 * numbers.max())
-    ax.axvline(1.0, color=style.FAINT, lw=0.8, zorder=0)
+    ax.axvline(1.0, zorder=0, **BUCKLING)
+
+
+def _points(ax: Axes, rows: pd.DataFrame, name: str, error: str) -> None:
+    ax.errorbar(rows["buckling_number"], rows[name], rows[error], **POINTS)
 
 
 def _rate(ax: Axes, rows: pd.DataFrame) -> None:
     ax.axhline(0.0, color=style.GREY, lw=0.6, zorder=0)
-    ax.errorbar(
-        rows["buckling_number"], rows["rate_per_s"], rows["rate_se"], color=style.INK, marker="o",
-        ms=3, lw=0.8, elinewidth=0.7, capsize=1.5,
-    )  # fmt: skip
+    _points(ax, rows, "rate_per_s", "rate_se")
     ax.set_ylabel("Rate (1/s)")
 
 
 def _consistency(ax: Axes, rows: pd.DataFrame) -> None:
-    for (name, marker), colour in zip(
-        {"consistency": "o", "saturation": "s"}.items(), style.colours(3)[::2], strict=True
-    ):
-        ax.plot(
-            rows["buckling_number"], rows[name], marker=marker, ms=3, lw=0.8, color=colour,
-            label=name,
-        )  # fmt: skip
-    ax.set(ylim=(-0.03, 1.05), ylabel="Consistency, saturation")
-    ax.legend(loc="center left")
+    ax.plot(rows["buckling_number"], rows["consistency"], **CONSISTENCY)
+    ax.plot(rows["buckling_number"], rows["saturation"], **SATURATION)
+    ax.set(ylim=(-0.03, 1.03), ylabel="Consistency, saturation")
 
 
-def _capacities(ax: Axes, rows: pd.DataFrame, floors: pd.DataFrame) -> None:
-    """Both totals, each with the best that readouts of the input alone score."""
-    for (name, symbol), colour in zip(sweep.TOTALS.items(), style.colours(3)[::2], strict=True):
-        ax.errorbar(
-            rows["buckling_number"], rows[name], rows[f"{name}_se"], color=colour, marker="o",
-            ms=3, lw=0.8, elinewidth=0.7, label=symbol,
-        )  # fmt: skip
-        floor = sweep.FLOOR_LINE | {"color": colour}
-        ax.axhline(floors[name].max(), zorder=0, label=f"{symbol}, input alone", **floor)
-    ax.set(ylim=(-0.03, 1.05), ylabel="Capacity")
-    legend = ax.legend(loc="upper left", ncols=2, columnspacing=1.0, frameon=True)
-    legend.get_frame().set(edgecolor="none", alpha=1.0)  # the line at B = 1 runs behind it
-
-
-def _unstable(ax: Axes, rows: pd.DataFrame) -> None:
-    bad = (rows[["status", "twin_status"]] == "unstable").any(axis=1)
-    style.mark_unstable(ax, list(rows.loc[bad, "buckling_number"]))
+def _handles(unstable: bool) -> dict[str, Line2D]:
+    """The key of the panels over B."""
+    handles = {
+        "consistency: correlation of the twins": Line2D([], [], **CONSISTENCY),
+        "saturation: separation / that of unrelated motions": Line2D([], [], **SATURATION),
+        f"buckling at {parts.BUCKLING} = 1": Line2D([], [], **BUCKLING),
+    }
+    return handles | parts.floor_and_unstable(unstable)

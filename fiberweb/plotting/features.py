@@ -14,12 +14,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from fiberweb import groups
 from fiberweb.network import Network, crosshatch
-from fiberweb.plotting import style, sweep
+from fiberweb.plotting import parts, style, sweep
 
-TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
 NAMES = {
     "all": "all outputs",
     "crossing_x": "crossings\nx",
@@ -32,20 +32,20 @@ NAMES = {
     "near_springs": "near\nsprings",
     "near_actuation": "near\nactuation",
 }
-# letter in panel c, and where it stands beside its point, in points
-SHORT = {
-    "lateral_midpoints": ("L", (-7, -3)),
-    "near_springs": ("S", (3, -7)),
-    "near_actuation": ("A", (-2, -10)),
-}
+MARKED = {"lateral_midpoints": "s", "near_springs": "^", "near_actuation": "D"}  # in e
 # strokes along the displacements that are used
 STROKES = {(True, True): "+", (True, False): "_", (False, True): "|"}
+STROKE = {"ms": 5.2, "mew": 1.3}
 KIND_COLOUR = dict(zip(groups.KINDS, style.colours(3)))
 FORCES = cm.oslo  # batlow's colours stand for kinds of readouts here
 BAR = 0.26  # width, where groups lie 1 apart
+EDGE = {"edgecolor": style.INK, "linewidth": 0.4}  # the palest bars would hardly show without
+UNDER = -1  # bars and their errors lie under the floors, which they would hide
+TITLE = 12.0  # points from an axes to its title, with a line of shares between
 HELD = {"color": style.GREY, "marker": "s", "ms": 2.4, "mew": 0, "ls": ""}
 PULLED = {"color": style.GREY, "marker": ">", "ms": 3, "mew": 0, "ls": ""}
 SHUFFLED = {"color": style.INK, "marker": "D", "mfc": "white", "mew": 0.6, "ms": 2.4, "ls": ""}
+GROUP = {"color": style.GREY, "mfc": "white", "mew": 0.8, "ms": 3.4, "ls": ""}
 RANK_LINE = {"color": style.INK, "lw": 0.8, "ls": (0, (1, 1.5))}
 
 
@@ -70,34 +70,35 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         raise ValueError(f"the features table has no run of the {setup} setup to draw")
     network = crosshatch(int(table["n"].iloc[0]), length=1.0)
     with style.applied():
-        figure = style.figure(style.DOUBLE, 205.0)
-        top, middle, bottom = figure.subfigures(3, 1, height_ratios=[46, 103, 56])
+        figure = style.figure(style.DOUBLE, 218.0)
+        top, middle, bottom = figure.subfigures(3, 1, height_ratios=[45, 117, 56])
         size = f"{network.n}×{network.n}"
         style.letter(top, "a", f"Groups of readouts, {size} crosshatch ({setup} setup)")
         _schematics(top, network)
-        style.letter(middle, "b", "Scores")
         _scores(middle, table, tables["features_floors"])
+        curves, places = bottom.subfigures(1, 2, width_ratios=[1.3, 1])
         force = f"{greedy['force_N'].iloc[0]:g} N"
-        title = f"Fewest signals at {force}, chosen one by one on the training part"
-        style.letter(bottom, "c", f"{title} (L, S, A: the last three groups)")
-        _selection(bottom, network, table, greedy)
+        style.letter(curves, "e", f"Signals at {force}, chosen one by one on the training part")
+        style.letter(places, "f", "Where the fewest that suffice lie")
+        _curves(curves, table, greedy)
+        _places(places, network, greedy)
         style.save(figure, path)
     return figure
 
 
 def _schematics(part: SubFigure, network: Network) -> None:
-    axes = part.subplots(1, 5, width_ratios=[1, 1, 1, 1, 0.75])
+    axes = part.subplots(1, 5, width_ratios=[1, 1, 1, 1, 0.7])
     _marked(axes[0], network, groups.ALL)
-    axes[0].set_title("kinds of readouts")
+    axes[0].set_title("Kinds of readouts")
     for ax, group in zip(axes[1:], groups.REDUCED):
         count = _marked(ax, network, group)
-        ax.set_title(f"{NAMES[group].replace(chr(10), ' ')} ({count} signals)")
+        ax.set_title(f"{_name(group).capitalize()} ({count})")
     handles = {
         kind.replace("_", " "): Line2D([], [], color=KIND_COLOUR[kind], marker="o", ms=3, ls="")
         for kind in groups.KINDS
     }
     handles |= {
-        label: Line2D([], [], color=style.INK, marker=STROKES[used], ms=4, mew=1.0, ls="")
+        label: Line2D([], [], color=style.INK, marker=STROKES[used], ls="", **STROKE)
         for label, used in (
             ("x and y used", (True, True)), ("x used", (True, False)), ("y used", (False, True)),
         )
@@ -106,6 +107,10 @@ def _schematics(part: SubFigure, network: Network) -> None:
     handles["held end"], handles["pulled end"] = Line2D([], [], **HELD), Line2D([], [], **PULLED)
     axes[4].axis("off")
     axes[4].legend(handles.values(), handles.keys(), loc="center left", labelspacing=0.4)
+
+
+def _name(group: str) -> str:
+    return NAMES[group].replace("\n", " ")
 
 
 def _marked(ax: Axes, network: Network, group: str) -> int:
@@ -136,7 +141,7 @@ def _strokes(ax: Axes, points: pd.DataFrame, used: np.ndarray) -> None:
     for kind, colour in KIND_COLOUR.items():
         for (x, y), marker in STROKES.items():
             some = points[(points["kind"] == kind) & (used[0] == x) & (used[1] == y)]
-            ax.plot(some["x"], some["y"], marker, color=colour, ms=4, mew=1.0, zorder=4)
+            ax.plot(some["x"], some["y"], marker, color=colour, zorder=4, **STROKE)
 
 
 def _scores(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame) -> None:
@@ -146,28 +151,30 @@ def _scores(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame) -> None:
     colour = dict(zip(forces, FORCES(np.linspace(0.25, 0.8, len(forces)))))
     shift = dict(zip(forces, BAR * (np.arange(len(forces)) - (len(forces) - 1) / 2)))
     axes = part.subplots(3, 1, sharex=True, height_ratios=[1.1, 1.1, 0.8])
-    for ax, (column, symbol) in zip(axes, TOTALS.items()):
+    for ax, letter, (column, symbol) in zip(axes, "bc", sweep.TOTALS.items()):
         for force in forces:
             _bars(ax, table[table["force_N"] == force], names, column, colour[force], shift[force])
-        for value in floors[column]:
-            ax.axhline(value, zorder=3, **sweep.FLOOR_LINE)
         _shares(ax, table[table["verdict"]], names, column)
-        ax.set(ylabel=symbol, ylim=(0, None))
+        parts.letter(ax, letter, f"{parts.CAPACITIES[column]} of each group", TITLE)
+        ax.set(ylabel=symbol, ylim=(0.0, sweep.top(table, floors, column)))
+        sweep.floors(ax, floors, column)
     ranks, counts = axes[2], table.drop_duplicates("group").set_index("group")["n_signals"]
     for force in forces:
         rank = _one(table[table["force_N"] == force], names)["effective_rank"]
-        ranks.plot(np.arange(len(names)) + shift[force], rank, "o", color=colour[force])
+        at = np.arange(len(names)) + shift[force]
+        ranks.plot(at, rank, "o", color=colour[force], mec=style.INK, mew=0.4)
     ranks.plot(counts[names].to_numpy(), "_", color=style.INK, ms=20, mew=0.8)
     ranks.annotate(
         "number of signals", (0, counts[names[0]]), (11, 0), textcoords="offset points",
         va="center", fontsize=6,
     )  # fmt: skip
+    parts.letter(ranks, "d", "Effective rank of each group")
     ranks.set(ylabel="Effective rank", yscale="log", ylim=(1, 2.5 * counts.max()))
     ranks.set_yticks([1, 10, 100], ["1", "10", "100"])
     ranks.set_xticks(range(len(names)), [f"{NAMES[name]}\n{counts[name]}" for name in names])
     ranks.tick_params(axis="x", length=0)
     ranks.set_xlim(-0.5, len(names) - 0.5)
-    _key(part, table, colour)
+    parts.key(part, _handles(table, colour), loc="outside upper center", ncols=3)
 
 
 def _bars(ax: Axes, rows: pd.DataFrame, names: list[str], column: str, colour, shift) -> None:
@@ -178,8 +185,8 @@ def _bars(ax: Axes, rows: pd.DataFrame, names: list[str], column: str, colour, s
         style.mark_unstable(ax, list(at))
         return
     ax.bar(
-        at, scored[column], BAR, yerr=scored[f"{column}_se"], color=colour,
-        error_kw={"elinewidth": 0.6, "ecolor": style.INK}, linewidth=0,
+        at, scored[column], BAR, yerr=scored[f"{column}_se"], color=colour, zorder=UNDER, **EDGE,
+        error_kw={"elinewidth": 0.7, "capsize": 1.5, "ecolor": style.INK, "zorder": UNDER},
     )  # fmt: skip
     if column == "c_nl":
         ax.plot(at, _one(rows, names, "shuffled")[column], zorder=4, **SHUFFLED)
@@ -204,41 +211,33 @@ def _shares(ax: Axes, verdict: pd.DataFrame, names: list[str], column: str) -> N
         )  # fmt: skip
 
 
-def _key(part: SubFigure, table: pd.DataFrame, colour: dict) -> None:
-    """What the marks mean, on the title's line."""
+def _handles(table: pd.DataFrame, colour: dict) -> dict:
+    """What the marks of the scores mean."""
     handles = {}
     for force, rows in table.groupby("force_N"):
         verdict = ", verdicts" if rows["verdict"].any() else ""
-        label = f"{force:g} N (B = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
-        handles[label] = Line2D([], [], color=colour[force], lw=4)
+        label = f"{force:g} N ({parts.BUCKLING} = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
+        handles[label] = Patch(facecolor=colour[force], **EDGE)
+    handles["± standard error"] = Line2D([], [], color=style.INK, marker="|", ms=7, mew=0.8, ls="")
     handles["shuffled split"] = Line2D([], [], **SHUFFLED)
-    handles["input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
-    if (table["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    legend = part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="upper right",
-        bbox_to_anchor=(0.995, 1.0), columnspacing=1.0, handlelength=1.2, handletextpad=0.5,
-    )  # fmt: skip
-    legend.set_in_layout(False)  # it shares the line of the title, which reserves the room
+    return handles | parts.floor_and_unstable((table["status"] == "unstable").any())
 
 
-def _selection(
-    part: SubFigure, network: Network, table: pd.DataFrame, greedy: pd.DataFrame
-) -> None:
-    """Share of a capacity over the number of signals, and where the fewest lie."""
-    axes = part.subplots(1, 4, width_ratios=[1.35, 1.35, 1, 1])
+def _curves(part: SubFigure, table: pd.DataFrame, greedy: pd.DataFrame) -> None:
+    """Share of a capacity over the number of signals."""
     scored = _one(table[table["verdict"]], [*groups.REDUCED, "all"])
-    for curve, place, (target, symbol) in zip(axes[:2], axes[2:], TOTALS.items()):
+    for ax, (target, symbol) in zip(part.subplots(1, 2), sweep.TOTALS.items()):
         chosen = greedy[greedy["target"] == target]
-        _network(place, network)
-        place.set_title(f"the fewest for {symbol}")
         if (chosen["status"] == "unstable").any():
-            style.mark_unstable(curve, [1.0])
+            style.mark_unstable(ax, [1.0])
         else:
-            _curve(curve, chosen, scored, target)
-            _fewest(place, network, chosen)
-        curve.set(xscale="log", xlabel="Number of signals", ylabel=f"{symbol} / that of all")
-        curve.set_xticks([1, 10, 100], ["1", "10", "100"])
+            _curve(ax, chosen, scored, target)
+        ax.set(xscale="log", xlabel="Number of signals", ylabel=f"{symbol} / that of all")
+        ax.set_xticks([1, 10, 100], ["1", "10", "100"])
+    handles = {
+        _name(group): Line2D([], [], marker=marker, **GROUP) for group, marker in MARKED.items()
+    }
+    parts.key(part, {"chosen signals": Line2D([], [], color=style.INK)} | handles)
 
 
 def _curve(ax: Axes, chosen: pd.DataFrame, scored: pd.DataFrame, target: str) -> None:
@@ -254,14 +253,22 @@ def _curve(ax: Axes, chosen: pd.DataFrame, scored: pd.DataFrame, target: str) ->
         0.97, 0.6, f"{needed} signals\nkeep {share:.0%}".replace("%", " %"),
         transform=ax.transAxes, ha="right", va="top",
     )  # fmt: skip
-    for group, (letter, beside) in SHORT.items():
+    for group, marker in MARKED.items():
         row = scored.loc[group]
         place = row["n_signals"], row[target] / scored.loc["all", target]
-        ax.plot(*place, "s", color=style.GREY, ms=2.5)
-        label = ax.annotate(letter, place, beside, textcoords="offset points", fontsize=6)
-        label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.2})
+        ax.plot(*place, marker=marker, zorder=5, **GROUP)
     ax.text(rank * 1.15, 0.03, f"effective\nrank {rank:.1f}", fontsize=6)
     ax.set_ylim(0, None)
+
+
+def _places(part: SubFigure, network: Network, greedy: pd.DataFrame) -> None:
+    """The network with the fewest signals that keep the share, for either capacity."""
+    for ax, (target, symbol) in zip(part.subplots(1, 2), sweep.TOTALS.items()):
+        chosen = greedy[greedy["target"] == target]
+        _network(ax, network)
+        ax.set_title(f"For {symbol}")
+        if (chosen["status"] != "unstable").all():
+            _fewest(ax, network, chosen)
 
 
 def _fewest(ax: Axes, network: Network, chosen: pd.DataFrame) -> None:

@@ -18,8 +18,7 @@ from fiberweb.plotting import style
 from fiberweb.scene import Scene
 
 POINTS = 12  # drawn on each section
-# the lightest fifth does not show on white as a line, see `style.colours`
-CURVATURE = ListedColormap(style.SEQUENTIAL(np.linspace(0.0, 0.8, 256)))
+CURVATURE = ListedColormap(style.colours(256))  # dark enough to show on white as a line
 MARGIN = 16.0  # mm, about the network, and length of the bar that marks a held end
 MM = 1e3  # of a metre
 
@@ -37,7 +36,7 @@ class Film(NamedTuple):
 
     def caption(self, frame: int) -> str:
         """Time and input of a frame."""
-        return f"t = {self.time[frame]:.2f} s, u = {self.u[frame]:+.2f}".replace("-", "−")
+        return f"$t$ = {self.time[frame]:.2f} s\n$u$ = {self.u[frame]:+.2f}".replace("-", "−")
 
 
 def film_of(data: xr.Dataset, instants: np.ndarray) -> Film:
@@ -74,7 +73,7 @@ def scene_of(data: xr.Dataset) -> Scene:
 
 def force_of(scene: Scene) -> str:
     """The force as its buckling number, a label."""
-    return f"B = {scene.buckling_number:.3g}"
+    return rf"$\mathcal{{B}}$ = {scene.buckling_number:.3g}"
 
 
 def norm_of(films: Sequence[Film]) -> Normalize:
@@ -124,5 +123,5 @@ class Frame:
 def colour_bar(part: FigureBase, axes, norm: Normalize) -> None:
     """Key of the fibres' colours beside one axes, or several."""
     bar = part.colorbar(ScalarMappable(norm, CURVATURE), ax=axes, pad=0.01, aspect=18)
-    bar.set_label("|curvature| (1/m)")
+    bar.set_label("|Curvature| (1/m),\nsquare-root scale")
     bar.outline.set_visible(False)

@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.plotting import style
+from fiberweb.plotting import parts, style
 
 SHOWN = "same"  # the timing of the authors' script; the other one is a marker beside it
 PAPER_N = 6  # of the crosshatch in the experiment
@@ -26,27 +27,37 @@ PAPER = {  # Fig. 6: RMSE and interdecile range of the experiment
     5: {"rmse": 0.00924, "interdecile_range": 0.02383},
     10: {"rmse": 0.01573, "interdecile_range": 0.04082},
 }
-TRIVIAL = {"derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$", "u": "$u$"}
+TRIVIAL = {"derivatives": "$u\\,…$\n$u'''$", "powers": "$u\\,…$\n$u^3$", "u": "$u$"}
+MEASURES = {  # title and symbol; one row of bars each
+    "rmse": ("Root mean square error", "RMSE"),
+    "interdecile_range": ("Interdecile range", "$q_{90} - q_{10}$"),
+    "bias": ("Bias", "Mean error"),
+}
 MILLI = 1e3  # y is drawn in thousandths
-EXPERIMENT = {"color": style.INK, "lw": 0.8, "ls": (0, (4, 2))}
+UNIT = r"($10^{-3}$)"
+EXPERIMENT = {"color": style.INK, "lw": 0.8, "ls": "-."}
 MEAN = {"color": style.GREY, "lw": 0.8, "ls": ":"}
 NEXT = {"marker": "D", "ms": 2.6, "mfc": "white", "mec": style.INK, "mew": 0.6, "ls": ""}
-BAR = 4.5  # height that a bar gets, mm
+TRACE_SECONDS = 10.0  # of the test part: all of it would be a thicket in a third of the width
+READOUTS = "Readouts: networks, echo-state networks (ESN) of as many nodes, input alone"
+UPRIGHT = 8  # labels that fit side by side under an axes
+ROWS = [42.0, *[27.0] * len(MEASURES), 30.0]  # mm
 
 
 @dataclass(frozen=True)
 class Readout:
-    """One line of the bars: whose readouts, of which run, and how they look."""
+    """One violin and its bars: whose readouts, of which run, and how they look."""
 
     run: str
     name: str  # as in the table
     label: str
     face: Sequence[float] | str
     edge: Sequence[float] | str
+    inner: Sequence[float] | str  # median and deciles, to show on the face
 
 
 def draw(table: pd.DataFrame, found: xr.Dataset, setup: str, path: str | Path) -> Figure:
-    """Draw the figure for one setup and write it as PNG and PDF.
+    """Draw the figure for one setup and write it as PNG and PDF: a column for each order.
 
     Args:
         table: from `narma.table`; rows of other setups are left out. A run whose status is
@@ -64,35 +75,35 @@ def draw(table: pd.DataFrame, found: xr.Dataset, setup: str, path: str | Path) -
     table = table[table["setup"] == setup]
     if table.empty:
         raise ValueError(f"the NARMA table has no run of the {setup} setup to draw")
-    readouts = _readouts(table)
+    readouts, shown = _readouts(table), _example(table)
     orders = sorted(table["order"].unique())
-    bars = 20.0 + BAR * len(readouts)
     with style.applied():
-        figure = style.figure(style.DOUBLE, 68.0 + bars)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[68.0, bars])
-        left, right = top.subfigures(1, 2, width_ratios=[1.0, 1.15])
-        style.letter(left, "a", "Error $\\hat{y} - y$, its median and deciles")
-        reservoirs = [one for one in readouts if one.name in ("network", "echo_state")]
-        for ax, order in zip(_row(left, len(orders)), orders, strict=True):
-            _errors(ax, found, reservoirs, order)
-        _errors_key(left, reservoirs)
-        shown = _example(table)
-        style.letter(right, "b", f"{shown.label} crosshatch (black dashes: target)")
-        _traces(right, found, table, shown, orders)
-        style.letter(bottom, "c", f"Root mean square error and interdecile range ({setup} setup)")
-        axes = _row(bottom, 2 * len(orders), sharey=True)
-        for column, axes_of_it in zip(
-            ("rmse", "interdecile_range"), (axes[: len(orders)], axes[len(orders) :]), strict=True
-        ):
-            for ax, order in zip(axes_of_it, orders, strict=True):
-                _bars(ax, table[table["order"] == order], readouts, column, order)
-        _bars_key(bottom, table)
+        figure = style.figure(style.DOUBLE, sum(ROWS) + 26.0)
+        figure.suptitle(f"NARMA tasks, {setup} setup", x=0.005, ha="left")
+        axes = figure.subplots(len(ROWS), len(orders), squeeze=False, height_ratios=ROWS)
+        for column, order in zip(axes.T, orders, strict=True):
+            of_order = table[table["order"] == order]
+            _errors(column[0], found, readouts, order)
+            for ax, measure in zip(column[1:-1], MEASURES, strict=True):
+                _bars(ax, of_order, readouts, measure)
+            _labels(column[-2], readouts)
+            _traces(column[-1], found, of_order, shown, order)
+        _titles(axes[:, 0], shown)
+        axes[-2, 0].set_xlabel(READOUTS, loc="left")
+        figure.align_ylabels(axes[:, 0])
+        parts.key(figure, _handles(table), ncols=4)
         style.save(figure, path)
     return figure
 
 
-def _row(part: SubFigure, count: int, **options) -> np.ndarray:
-    return part.subplots(1, count, squeeze=False, **options)[0]
+def _titles(axes: Sequence[Axes], shown: Readout) -> None:
+    """Panel letters, titles and labels of the rows."""
+    titles = ["Error", *(title for title, _ in MEASURES.values())]
+    labels = ["Error", *(symbol for _, symbol in MEASURES.values()), r"$y,\ \hat{y}$"]
+    titles.append(f"{shown.label} network")
+    for ax, letter, title, label in zip(axes, "abcde", titles, labels, strict=True):
+        parts.letter(ax, letter, title)
+        ax.set_ylabel(f"{label} {UNIT}")
 
 
 def _readouts(table: pd.DataFrame) -> list[Readout]:
@@ -101,16 +112,17 @@ def _readouts(table: pd.DataFrame) -> list[Readout]:
     colours = style.colours(len(runs))
     signals = table[table["readout"] == "echo_state"].groupby("run")["n_signals"].first()
     made = [
-        Readout(run.run, "network", f"{run.n}×{run.n}", colour, colour)
+        Readout(run.run, "network", f"{run.n}×{run.n}", colour, colour, "white")
         for run, colour in zip(runs.itertuples(), colours, strict=True)
     ]
     made += [
-        Readout(run, "echo_state", f"echo state, {signals[run]} nodes", "white", colour)
+        Readout(run, "echo_state", f"ESN\n{signals[run]}", "white", colour, style.INK)
         for run, colour in zip(runs["run"], colours, strict=True)
     ]
     first = runs["run"].iloc[0]  # readouts of the input are the same for every run
     return made + [
-        Readout(first, name, label, style.FAINT, style.FAINT) for name, label in TRIVIAL.items()
+        Readout(first, name, label, style.FAINT, style.GREY, style.INK)
+        for name, label in TRIVIAL.items()
     ]
 
 
@@ -125,7 +137,7 @@ def _example(table: pd.DataFrame) -> Readout:
 
 
 def _errors(ax: Axes, found: xr.Dataset, readouts: list[Readout], order: int) -> None:
-    """Violins with the median and the deciles, and the width between the experiment's deciles."""
+    """Violins with the median and the deciles."""
     for place, one in enumerate(readouts):
         at = {"run": one.run, "order": order, "timing": SHOWN}
         estimate = found["estimate"].sel(at | {"readout": one.name})
@@ -136,92 +148,75 @@ def _errors(ax: Axes, found: xr.Dataset, readouts: list[Readout], order: int) ->
         (body,) = ax.violinplot([error], [place], widths=0.85, showextrema=False)["bodies"]
         body.set(facecolor=one.face, edgecolor=one.edge, alpha=1.0, linewidth=0.8)
         low, middle, high = np.quantile(error, (0.1, 0.5, 0.9))
-        # on a dark violin a dark bar would not show, on a white one a white bar would not
-        contrast = style.INK if one.name == "echo_state" else "white"
-        ax.plot([place, place], [low, high], color=contrast, lw=1.2, solid_capstyle="butt")
-        ax.plot(place, middle, "o", color=contrast, ms=2.2)
-    half = MILLI * PAPER[order]["interdecile_range"] / 2.0
-    place = len(readouts)
-    ax.errorbar(place, 0.0, yerr=half, color=style.INK, elinewidth=0.8, capsize=2.0, marker="")
+        ax.plot([place, place], [low, high], color=one.inner, lw=1.2, solid_capstyle="butt")
+        ax.plot(place, middle, "o", color=one.inner, ms=2.2)
+    ax.set_title(f"NARMA-{order}", loc="right")
+    _categories(ax, readouts)
+    _labels(ax, readouts)
+
+
+def _categories(ax: Axes, readouts: list[Readout]) -> None:
+    """Places of the readouts, without their labels, and a line at 0."""
     ax.axhline(0.0, color=style.FAINT, lw=0.6, zorder=0)
-    ax.set_title(f"NARMA-{order}")
-    ax.set_xticks([])
+    ax.set_xlim(-0.6, len(readouts) - 0.4)
+    ax.set_xticks(range(len(readouts)), [""] * len(readouts))
+    ax.tick_params(axis="x", length=0, labelsize=6)
     ax.spines["bottom"].set_visible(False)
-    ax.set_ylabel(r"Error ($10^{-3}$)" if ax.get_subplotspec().is_first_col() else "")
 
 
-def _errors_key(part: SubFigure, readouts: list[Readout]) -> None:
-    handles = {
-        one.label: Patch(fc=one.face, ec=one.edge) for one in readouts if one.name == "network"
-    }
-    handles["echo state, equal size"] = Patch(fc="white", ec=style.GREY, lw=0.8)
-    handles["paper, experiment"] = Line2D([], [], color=style.INK, marker="|", ms=4, lw=0.8)
-    part.legend(
-        handles.values(), handles.keys(), loc="outside lower center", ncols=len(handles),
-        columnspacing=0.9, handlelength=1.2,
-    )  # fmt: skip
+def _labels(ax: Axes, readouts: list[Readout]) -> None:
+    """Names of the readouts, upright in two lines or, if there are many, turned in one."""
+    upright = len(readouts) <= UPRIGHT
+    labels = [one.label if upright else one.label.replace("\n", " ") for one in readouts]
+    ax.set_xticks(range(len(readouts)), labels, rotation=0 if upright else 90)
 
 
-def _traces(
-    part: SubFigure, found: xr.Dataset, table: pd.DataFrame, shown: Readout, orders: list[int]
-) -> None:
-    """Target (dashed) and estimate over the test part."""
-    axes = part.subplots(len(orders), 1, sharex=True, squeeze=False)[:, 0]
-    time = found["time"].values
-    mine = table[(table["run"] == shown.run) & (table["readout"] == shown.name)]
-    nrmse = mine[mine["timing"] == SHOWN].set_index("order")["nrmse"]
-    for ax, order in zip(axes, orders, strict=True):
-        at = {"run": shown.run, "order": order, "timing": SHOWN}
-        estimate = MILLI * found["estimate"].sel(at | {"readout": shown.name}).values
-        ax.plot(time, estimate, color=shown.edge)
-        ax.plot(time, MILLI * found["target"].sel(at).values, "--", color="black", lw=0.7)
-        title = f"NARMA-{order}"
-        if np.isnan(estimate).any():
-            style.mark_unstable(ax, [time.mean()])
-        else:
-            title += rf"   RMSE / $\sigma_y$ = {nrmse[order]:.2f}"
-        ax.set_title(title)
-        ax.margins(x=0.01)
-    axes[len(axes) // 2].set_ylabel(r"$y,\ \hat{y}$ ($10^{-3}$)")
-    axes[-1].set_xlabel("Time (s)")
-
-
-def _bars(ax: Axes, table: pd.DataFrame, readouts: list[Readout], column: str, order: int) -> None:
+def _bars(ax: Axes, table: pd.DataFrame, readouts: list[Readout], measure: str) -> None:
     """One bar a readout; the experiment's value, and what the target's mean would score."""
     rows = table.set_index(["run", "readout", "timing"])
-    places = -np.arange(len(readouts))
-    for place, one in zip(places, readouts, strict=True):
-        value = MILLI * rows.loc[(one.run, one.name, SHOWN), column]
+    for place, one in enumerate(readouts):
+        value = MILLI * rows.loc[(one.run, one.name, SHOWN), measure]
         if np.isnan(value):
-            ax.plot(
-                0.04, place, transform=ax.get_yaxis_transform(), gid="unstable", **style.UNSTABLE
-            )
+            style.mark_unstable(ax, [place])
             continue
-        ax.barh(place, value, 0.62, color=one.face, edgecolor=one.edge, linewidth=0.8)
-        ax.plot(MILLI * rows.loc[(one.run, one.name, "next"), column], place, **NEXT)
-    ax.axvline(MILLI * PAPER[order][column], **EXPERIMENT)
-    if column == "rmse":
+        ax.bar(place, value, 0.62, color=one.face, edgecolor=one.edge, linewidth=0.8)
+        ax.plot(place, MILLI * rows.loc[(one.run, one.name, "next"), measure], **NEXT)
+    published = PAPER[table["order"].iloc[0]]
+    if measure in published:
+        ax.axhline(MILLI * published[measure], **EXPERIMENT)
+    if measure == "rmse":
         known = table[(table["timing"] == SHOWN) & table["rmse"].notna()].iloc[0]
-        ax.axvline(MILLI * known["rmse"] / known["nrmse"], **MEAN)
-    ax.set_yticks(places, [one.label for one in readouts])
-    ax.tick_params(axis="y", length=0)
-    ax.margins(x=0.08)
-    ax.set_xlim(0.0, ax.get_xlim()[1])
-    ax.locator_params(axis="x", nbins=4)
-    ax.set_title(f"NARMA-{order}")
-    ax.set_xlabel(r"RMSE ($10^{-3}$)" if column == "rmse" else r"$q_{90} - q_{10}$ ($10^{-3}$)")
+        ax.axhline(MILLI * known["rmse"] / known["nrmse"], **MEAN)
+    _categories(ax, readouts)
+    ax.locator_params(axis="y", nbins=4)
 
 
-def _bars_key(part: SubFigure, table: pd.DataFrame) -> None:
+def _traces(ax: Axes, found: xr.Dataset, table: pd.DataFrame, shown: Readout, order: int) -> None:
+    """Target (dashed) and estimate at the beginning of the test part."""
+    seen = found.sel(run=shown.run, order=order, timing=SHOWN)
+    seen = seen.sel(time=slice(None, float(seen["time"][0]) + TRACE_SECONDS))
+    time, estimate = seen["time"].values, MILLI * seen["estimate"].sel(readout=shown.name).values
+    ax.plot(time, estimate, **parts.PREDICTION)
+    ax.plot(time, MILLI * seen["target"].values, **parts.TARGET)
+    if np.isnan(estimate).any():
+        style.mark_unstable(ax, [time.mean()])
+    else:
+        row = table.set_index(["run", "readout", "timing"]).loc[(shown.run, shown.name, SHOWN)]
+        ax.set_title(f"NRMSE = {row['nrmse']:.2f}", loc="right")
+    ax.margins(x=0.01)
+    ax.set_xlabel("Time (s)")
+
+
+def _handles(table: pd.DataFrame) -> dict[str, Artist]:
+    """The key of bars and traces."""
     handles = {
-        "estimate of $y$ at the same sample": Patch(fc=style.GREY, ec=style.GREY),
-        "at the next one": Line2D([], [], **NEXT),
-        "paper, experiment": Line2D([], [], **EXPERIMENT),
-        r"$\sigma_y$: the mean alone": Line2D([], [], **MEAN),
+        "estimate of the same sample": Patch(fc=style.FAINT, ec=style.GREY),
+        "of the next one": Line2D([], [], **NEXT),
+        "paper's experiment, another input": Line2D([], [], **EXPERIMENT),
+        r"$\sigma_y$, the mean's error": Line2D([], [], **MEAN),
+        "target $y$": Line2D([], [], **parts.TARGET),
+        r"estimate $\hat{y}$": Line2D([], [], **parts.PREDICTION),
     }
     if (table["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
-        columnspacing=1.4,
-    )  # fmt: skip
+    return handles

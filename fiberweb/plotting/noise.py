@@ -7,16 +7,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from fiberweb.plotting import style, sweep
+from fiberweb.plotting import parts, style, sweep
 
 MICRO = 1e6  # m to um
 # orders of magnitude, to place the scale
 INSTRUMENTS = {1e-8: "laser vibrometer", 1e-5: "camera"}
+AMPLITUDES = {"fc": style.FAINT, "ec": style.FAINT, "lw": 0.8}
+BARS = {"elinewidth": 0.8, "capsize": 2.5}  # wider than the markers, or small bars would not show
 
 
 def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
@@ -34,38 +38,44 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         ValueError: the table has no run of this setup.
     """
     rows = sweep.rows_of(tables["noise"], "noise", setup)
-    sizes = sorted(rows["n"].unique())
-    colour = dict(zip(sizes, style.colours(max(len(sizes), 2)), strict=False))
+    colour = parts.colour_of(rows["n"])
     with style.applied():
-        figure = style.figure(style.DOUBLE, 66.0)
+        figure = style.figure(style.DOUBLE, 70.0)
         axes = figure.subplots(1, 2)
         for ax, (name, symbol), letter in zip(axes, sweep.TOTALS.items(), "ab", strict=True):
-            for n in sizes:
+            for n in colour:
                 _network(ax, rows[rows["n"] == n], name, colour[n])
             _scale(ax, rows)
+            title = f"{parts.CAPACITIES[name]} ({setup} setup)"
+            parts.letter(ax, letter, title, pad=20)  # above the instruments
             ax.set(ylabel=symbol, ylim=(0.0, 1.0))
-            ax.set_title(rf"$\mathbf{{{letter}}}$", loc="left", fontsize=8, pad=12)
             sweep.floors(ax, tables["noise_floors"], name)
-        figure.legend(**_key(rows, colour), loc="outside lower center", columnspacing=1.2)
+        parts.key(figure, _handles(rows, colour))
         style.save(figure, path)
     return figure
 
 
 def _network(ax: Axes, rows: pd.DataFrame, name: str, colour) -> None:
-    """Mean over draws with least and largest, the noise-free value at the left edge, and the
-    median readout's amplitude as a tick at the foot."""
+    """Means over draws with standard errors, the noise-free value at the left edge."""
     if (rows["status"] == "unstable").all():
         style.mark_unstable(ax, [_place_of_none(rows)])
         return
-    noisy = rows[rows["noise_m"] > 0].groupby("noise_m")[name].agg(["mean", "min", "max"])
-    spread = [noisy["mean"] - noisy["min"], noisy["max"] - noisy["mean"]]
+    free, noisy = (rows[chosen] for chosen in (rows["noise_m"] == 0, rows["noise_m"] > 0))
+    by_level = noisy.groupby("noise_m")
     ax.errorbar(
-        MICRO * noisy.index, noisy["mean"], spread, color=colour, marker="o", ms=3, lw=0.9,
-        elinewidth=0.7, capsize=1.5,
+        MICRO * by_level[name].mean().index, by_level[name].mean(), _error(by_level, name),
+        color=colour, marker="o", ms=2.6, lw=0.9, **BARS,
     )  # fmt: skip
-    free = rows.loc[rows["noise_m"] == 0, name]
-    ax.plot([_place_of_none(rows)] * len(free), free, "D", color=colour, ms=3.5)
-    ax.axvline(MICRO * rows["amplitude_m"].iloc[0], color=colour, lw=0.8, ls=":", zorder=0)
+    ax.errorbar(
+        [_place_of_none(rows)] * len(free), free[name], free[f"{name}_se"], color=colour,
+        marker="D", ms=3.0, ls="", **BARS,
+    )  # fmt: skip
+
+
+def _error(by_level, name: str) -> pd.Series:
+    """What the finite test part and the draw of the noise leave open, in quadrature; a single
+    draw has the first alone."""
+    return np.hypot(by_level[f"{name}_se"].mean(), by_level[name].std().fillna(0.0))
 
 
 def _place_of_none(rows: pd.DataFrame) -> float:
@@ -74,29 +84,30 @@ def _place_of_none(rows: pd.DataFrame) -> float:
 
 
 def _scale(ax: Axes, rows: pd.DataFrame) -> None:
-    """A log axis in um whose leftmost tick is no noise, and what some instruments reach."""
+    """A log axis in um whose leftmost tick is no noise, how far median readouts move, and what
+    some instruments reach."""
     least = _place_of_none(rows)
     levels = sorted(MICRO * rows.loc[rows["noise_m"] > 0, "noise_m"].unique())
     ax.set(xscale="log", xlabel="Standard deviation of the readout noise (µm)")
     ax.set_xticks([least, *levels], ["none", *(f"{level:g}" for level in levels)])
     ax.minorticks_off()
     ax.set_xlim(least / 2, 2 * levels[-1])
+    amplitude = MICRO * rows["amplitude_m"].dropna()
+    if len(amplitude):
+        ax.axvspan(amplitude.min(), amplitude.max(), zorder=0, **AMPLITUDES)
     for noise, instrument in INSTRUMENTS.items():
         if levels[0] <= 1.001 * MICRO * noise and MICRO * noise <= 1.001 * levels[-1]:
             ax.annotate(
                 f"{instrument}\n▾", (MICRO * noise, 1.0), (0, -1),
                 xycoords=ax.get_xaxis_transform(), textcoords="offset points", fontsize=6,
-                color=style.GREY, ha="center", va="bottom", linespacing=0.9,
+                ha="center", va="bottom", linespacing=0.9,
             )  # fmt: skip
 
 
-def _key(rows: pd.DataFrame, colour: dict) -> dict:
+def _handles(rows: pd.DataFrame, colour: dict) -> dict:
     handles = {f"{n}×{n}": Line2D([], [], color=colour[n], marker="o", ms=3) for n in colour}
-    handles |= {
-        "no noise": Line2D([], [], color=style.INK, marker="D", ms=3.5, ls=""),
-        "median readout's standard deviation": Line2D([], [], color=style.INK, lw=0.8, ls=":"),
-    }
-    handles["readouts made of the input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
-    if (rows["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    return {"handles": handles.values(), "labels": handles.keys(), "ncols": len(handles)}
+    handles["no noise"] = Line2D([], [], color=style.INK, marker="D", ms=3.0, ls="")
+    bar = Line2D([], [], marker="|", ms=7, mew=0.8, ls="", color=style.INK)
+    handles["± standard error"] = bar
+    handles["sd of the median readout"] = Patch(**AMPLITUDES)
+    return handles | parts.floor_and_unstable((rows["status"] == "unstable").any())

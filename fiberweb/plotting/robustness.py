@@ -13,10 +13,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from fiberweb.plotting import style, sweep
+from fiberweb.plotting import parts, style, sweep
 
 TRAINING = {"marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "lw": 0.8, "ls": (0, (4, 2))}
-MARGIN = 0.05  # of capacities about what is drawn
+TEST = {"marker": "o", "ms": 2.4}
+MEAN = {"marker": "s", "ms": 3}
+CAP = 2.5  # points: wider than the markers, or small bars would not show
+LINE = 0.06  # height of a line of text, in capacity
 
 
 def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
@@ -36,36 +39,27 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     """
     seeds = sweep.rows_of(tables["robustness"], "robustness", setup)
     alphas = sweep.rows_of(tables["robustness_alpha"], "robustness_alpha", setup)
-    sizes = sorted(seeds["n"].unique())
-    colour = dict(zip(sizes, style.colours(max(len(sizes), 2)), strict=False))
+    floors = tables["robustness_floors"]
+    colour = parts.colour_of(seeds["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 122.0)
-        top, bottom = figure.subfigures(2, 1)
-        style.letter(top, "a", "Seeds of the input")
-        _panels(top, _seeds, seeds, colour, None)
-        _key(top, seeds, colour, {
-            "± bootstrap standard error": Line2D([], [], color=style.INK, marker="o", ms=3),
-            "mean ± standard deviation of seeds": Line2D([], [], color=style.INK, marker="s", ms=4),
-        })  # fmt: skip
-        style.letter(bottom, "b", "Ridge penalty")
-        _panels(bottom, _alphas, alphas, colour, tables["robustness_floors"])
-        _key(bottom, alphas, colour, {
-            "test": Line2D([], [], color=style.INK, marker="o", ms=3),
-            "training": Line2D([], [], color=style.INK, **TRAINING),
-            "readouts made of the input alone": Line2D([], [], **sweep.FLOOR_LINE),
-        })  # fmt: skip
+        rows = figure.subfigures(2, 1)
+        style.letter(rows[0], "a", f"Seeds of the input ({setup} setup)")
+        _panels(rows[0], _seeds, seeds, colour, floors)
+        style.letter(rows[1], "b", f"Ridge penalty, first seed ({setup} setup)")
+        _panels(rows[1], _alphas, alphas, colour, floors)
+        unstable = any((frame["status"] == "unstable").any() for frame in (seeds, alphas))
+        parts.key(figure, _handles(colour, unstable))
         style.save(figure, path)
     return figure
 
 
 def _panels(part: SubFigure, panel, rows: pd.DataFrame, colour: dict, floors) -> None:
-    """One axes for C_nl and one for C_m."""
+    """One axes for C_nl and one for C_m, on the one scale that all four have."""
     for ax, (name, symbol) in zip(part.subplots(1, 2), sweep.TOTALS.items(), strict=True):
         panel(ax, rows, name, colour)
-        ax.set_ylabel(symbol)
-        if floors is not None:
-            ax.set_ylim(0.0, 1.0)
-            sweep.floors(ax, floors, name)
+        ax.set(ylabel=f"{parts.CAPACITIES[name]} {symbol}", ylim=(0.0, 1.0))
+        sweep.floors(ax, floors, name)
 
 
 def _seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
@@ -75,26 +69,34 @@ def _seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
     for n, frame in rows.groupby("n"):
         at = frame["seed"].map(place)
         ax.errorbar(
-            at, frame[name], frame[f"{name}_se"], color=colour[n], marker="o", ms=3, ls="",
-            elinewidth=0.8,
+            at, frame[name], frame[f"{name}_se"], color=colour[n], ls="", elinewidth=0.8,
+            capsize=CAP, **TEST,
         )  # fmt: skip
         style.mark_unstable(ax, list(at[frame["status"] == "unstable"]))
-        mean, spread = frame[name].mean(), frame[name].std()
-        ax.plot([-0.5, len(listed) - 0.5], [mean] * 2, color=colour[n], lw=0.6, ls=":", zorder=0)
-        ax.errorbar(
-            [len(listed)], [mean], [spread], color=colour[n], marker="s", ms=4, elinewidth=1.2,
-            capsize=2,
-        )  # fmt: skip
-        ax.annotate(
-            f"sd {spread:.3f}\nse {frame[f'{name}_se'].mean():.3f}", (len(listed), mean), (8, 0),
-            textcoords="offset points", va="center", fontsize=6, color=colour[n],
-        )  # fmt: skip
+    _mean_of_seeds(ax, rows, name, colour, len(listed))
     ax.axvline(len(listed) - 0.5, color=style.FAINT, lw=0.6)
     ax.set_xticks(range(len(listed) + 1), [*map(str, listed), "mean"])
-    ax.set(xlabel="Seed", xlim=(-0.5, len(listed) + 0.9))
-    known = pd.concat([rows[name] - rows[f"{name}_se"], rows[name] + rows[f"{name}_se"]]).dropna()
-    if len(known):
-        ax.set_ylim(max(0.0, known.min() - MARGIN), min(1.0, known.max() + MARGIN))
+    ax.set(xlabel="Seed", xlim=(-0.5, len(listed) + 2.0))
+
+
+def _mean_of_seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict, place: int) -> None:
+    """Mean and spread of every network's seeds, in figures too, one above the other."""
+    of_n = rows.groupby("n")
+    found = pd.DataFrame(
+        {"mean": of_n[name].mean(), "sd": of_n[name].std(), "se": of_n[f"{name}_se"].mean()}
+    )
+    below = -np.inf
+    for n, one in found.dropna(subset="mean").sort_values("mean").iterrows():
+        ax.errorbar(
+            [place], [one["mean"]], [one["sd"]], color=colour[n], elinewidth=1.2,
+            capsize=CAP + 0.5, **MEAN,
+        )  # fmt: skip
+        below = max(one["mean"], below + LINE)
+        known = one[["sd", "se"]].dropna()  # a single seed has no spread, a short run no error
+        ax.annotate(
+            ", ".join(f"{key} {value:.3f}" for key, value in known.items()), (place, below), (7, 0),
+            textcoords="offset points", va="center", fontsize=6,
+        )  # fmt: skip
 
 
 def _alphas(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
@@ -103,8 +105,8 @@ def _alphas(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
         frame = frame.sort_values("alpha")
         ax.plot(frame["alpha"], frame[f"{name}_train"], color=colour[n], **TRAINING)
         ax.errorbar(
-            frame["alpha"], frame[name], frame[f"{name}_se"], color=colour[n], marker="o", ms=3,
-            lw=0.9, elinewidth=0.7,
+            frame["alpha"], frame[name], frame[f"{name}_se"], color=colour[n], lw=0.9,
+            elinewidth=0.7, capsize=CAP, **TEST,
         )  # fmt: skip
         style.mark_unstable(ax, list(frame.loc[frame["status"] == "unstable", "alpha"]))
     ax.set(xscale="log", xlabel=r"Ridge penalty $\alpha$")
@@ -112,11 +114,10 @@ def _alphas(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
     ax.minorticks_off()
 
 
-def _key(part: SubFigure, rows: pd.DataFrame, colour: dict, marks: dict) -> None:
-    handles = {f"{n}×{n}": Line2D([], [], color=colour[n], lw=2.0) for n in colour} | marks
-    if (rows["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
-        columnspacing=1.2,
-    )  # fmt: skip
+def _handles(colour: dict, unstable: bool) -> dict[str, Line2D]:
+    """The key of both rows."""
+    handles = {f"{n}×{n}": Line2D([], [], color=colour[n], lw=2.0) for n in colour}
+    handles["test ± standard error"] = Line2D([], [], color=style.INK, **TEST)
+    handles["mean ± sd of seeds"] = Line2D([], [], color=style.INK, **MEAN)
+    handles["training"] = Line2D([], [], color=style.INK, **TRAINING)
+    return handles | parts.floor_and_unstable(unstable)

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
+from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
 from fiberweb.network import Network, crosshatch, polygon
-from fiberweb.plotting import style, sweep
+from fiberweb.plotting import parts, style, sweep
 from fiberweb.scene import Scene
 
 if TYPE_CHECKING:
@@ -27,8 +29,9 @@ TITLES = {"crosshatch": "Crosshatch networks", "polygon": "Polygonal networks"}
 TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resolved in a third
 CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
 DRIVEN = r"$\updownarrow$"
-TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
 TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
+# caps wider than the markers, or small bars would not show
+TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick": 0.7}
 
 
 def draw(
@@ -70,17 +73,16 @@ def draw(
         figure = style.figure(style.DOUBLE, sum(heights))
         rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
         letters = iter("abcd")
-        sizes = sorted(table["n"].unique())
-        colour = dict(zip(sizes, style.colours(len(sizes)), strict=True))  # of N in every panel
+        colour = parts.colour_of(table["n"])
         style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
         _networks(rows[0], table, setup)
         for row, topology in zip(rows[1:], present, strict=False):
-            style.letter(row, next(letters), TITLES[topology])
+            style.letter(row, next(letters), f"{TITLES[topology]} ({setup} setup)")
             runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
             _capacities(row, runs, points, floors, colour)
-        _key(rows[1], table, floors)
+        parts.key_beside_title(rows[1], _marks(table, floors))
         if traces is not None:
-            title = f"Example computations{_network_name(traces)} (black dashes: target)"
+            title = f"Example computations{_network_name(traces)} ({setup} setup)"
             style.letter(rows[-1], next(letters), title)
             _traces(rows[-1], traces)
         style.save(figure, path)
@@ -157,44 +159,42 @@ def _capacities(
         for ax, target, marker in ((by_order, "order", "o"), (by_lag, "lag", "")):
             at = curve[curve["target"] == target].sort_values("at")
             ax.plot(at["at"], at["c"], color=colour[n], marker=marker, ms=2.4)
-    by_order.set(xlabel="Legendre order", ylabel="capacity c", xticks=range(2, 11, 2))
-    by_lag.set(xlabel="recall lag (s)", xlim=(0, points["at"][points["target"] == "lag"].max()))
+    by_order.set(xlabel="Legendre order", ylabel="Capacity $c$", xticks=range(2, 11, 2))
+    by_lag.set(xlabel="Recall lag (s)", xlim=(0, points["at"][points["target"] == "lag"].max()))
     by_lag.tick_params(labelleft=False)
-    handles = [
-        Line2D([], [], color=colour[n]) if n not in unstable else Line2D([], [], **style.UNSTABLE)
-        for n in sizes
-    ]
-    labels = [_label(runs["topology"].iloc[0], n) for n in sizes]
-    # beside the axes: the larger networks' curves fill the whole panel
-    by_lag.legend(
-        handles, labels, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelspacing=0.3,
-        handlelength=1.2,
-    )  # fmt: skip
-    for ax, (name, symbol) in zip((nonlinear, memory), TOTALS.items(), strict=True):
+    _sizes_bar(part, [by_order, by_lag], {n: colour[n] for n in sizes})
+    for ax, (name, symbol) in zip((nonlinear, memory), sweep.TOTALS.items(), strict=True):
         _total(ax, runs, name, colour)
-        ax.set(xlabel="N", ylabel=symbol, xticks=sizes)
+        ax.set(xlabel="$N$", ylabel=symbol, xticks=sizes)
     for ax in (by_order, by_lag, nonlinear, memory):
         ax.set_ylim(*CAPACITY_AXIS)
     if floors is not None:
-        for ax, name in zip((nonlinear, memory), TOTALS, strict=True):
+        for ax, name in zip((nonlinear, memory), sweep.TOTALS, strict=True):
             sweep.floors(ax, floors, name)
 
 
-def _key(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame | None) -> None:
-    """What the marks in the totals mean, on the title's line."""
+def _sizes_bar(part: SubFigure, axes: list[Axes], colour: dict) -> None:
+    """The key of N beside the curves: one field of colour each."""
+    norm = BoundaryNorm(np.arange(len(colour) + 1) - 0.5, len(colour))
+    shades = ScalarMappable(norm, ListedColormap(list(colour.values())))
+    bar = part.colorbar(shades, ax=axes, pad=0.01, fraction=0.04, aspect=14)
+    bar.set_ticks(range(len(colour)), labels=[str(n) for n in colour])
+    bar.set_label("$N$")
+    bar.ax.tick_params(length=0)
+    bar.minorticks_off()
+    bar.outline.set_linewidth(0.4)
+
+
+def _marks(table: pd.DataFrame, floors: pd.DataFrame | None) -> dict[str, Line2D]:
+    """Legend entries of the totals."""
     handles = {
         "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
         "training": Line2D([], [], **TRAINING),
     }
-    if floors is not None:
-        handles["readouts made of the input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
-    if (table["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    legend = part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="upper right",
-        bbox_to_anchor=(0.995, 1.0), columnspacing=1.2,
-    )  # fmt: skip
-    legend.set_in_layout(False)  # it shares the line of the title, which reserves the room
+    entries = parts.floor_and_unstable((table["status"] == "unstable").any())
+    if floors is None:
+        del entries[parts.INPUT_ALONE]
+    return handles | entries
 
 
 def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
@@ -206,7 +206,7 @@ def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
     for run in stable.itertuples():
         ax.errorbar(
             run.n, getattr(run, name), yerr=getattr(run, f"{name}_se"), color=colour[run.n],
-            ecolor=style.INK, marker="o", ms=3, elinewidth=0.7, zorder=3,
+            ecolor=style.INK, zorder=3, **TEST,
         )  # fmt: skip
     style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
     ax.margins(x=0.08)
@@ -220,19 +220,21 @@ def _traces(part: SubFigure, traces: xr.Dataset) -> None:
     shown = known & (time < start + TRACE_SECONDS)
     columns = -(-traces.sizes["trace"] // 2)
     axes = part.subplots(2, columns, sharex=True, sharey=True, squeeze=False)
-    colours = style.colours(4)
     for ax in axes[:, 0]:
         ax.set_ylabel(r"$z,\ \hat{z}$")
     for ax, name in zip(axes.T.ravel(), traces["trace"].values, strict=False):
         one = traces.sel(trace=name)
         legendre = str(name).startswith("P")
-        ax.plot(time[shown], one["prediction"].values[shown], color=colours[1 if legendre else 3])
-        ax.plot(time[shown], one["target"].values[shown], "--", color="black", lw=0.7)
+        ax.plot(time[shown], one["prediction"].values[shown], **parts.PREDICTION)
+        ax.plot(time[shown], one["target"].values[shown], **parts.TARGET)
         title = f"$P_{{{name[1:]}}}(u(t))$" if legendre else f"$u(t - {name.split()[0]}$ ms$)$"
-        ax.set_title(f"{title}   c = {float(one['c']):.3f}")
+        ax.set_title(f"{title}   $c$ = {float(one['c']):.3f}")
         ax.set(ylim=(-1.15, 1.15), xlim=(start, start + TRACE_SECONDS))
     for ax in axes[-1]:
-        ax.set_xlabel("time (s)")
+        ax.set_xlabel("Time (s)")
+    lines = {"target $z$": parts.TARGET, "prediction $\\hat{z}$": parts.PREDICTION}
+    handles = {label: Line2D([], [], **line) for label, line in lines.items()}
+    parts.key_beside_title(part, handles)
 
 
 def _known(traces: xr.Dataset) -> np.ndarray:
@@ -249,4 +251,4 @@ def _network_name(traces: xr.Dataset) -> str:
 
 
 def _label(topology: str, n: int) -> str:
-    return f"{n}×{n}" if topology == "crosshatch" else f"N = {n}"
+    return f"{n}×{n}" if topology == "crosshatch" else f"$N$ = {n}"

@@ -11,6 +11,7 @@ from fiberweb import Scene, chaos, crosshatch, dataset, simulate, tables
 from fiberweb.config import Config
 from fiberweb.plotting import chaos as plotting
 from fiberweb.runs import runs
+from tests.unit.legible import assert_legible
 
 RATE = 50.0
 SCENE = Scene(crosshatch(2, length=0.5), duration=20.0, sample_rate=RATE, disturbance=1e-9)
@@ -181,9 +182,9 @@ def test_weakly_driven_twins_forget_at_half_the_rate_of_damping():
 def test_the_figure_marks_unstable_pairs_in_every_panel_over_b(tmp_path):
     numbers = np.array([0.2, 1.0, 2.0, 5.0])
     table = pd.DataFrame({"setup": "described", "buckling_number": numbers}).assign(
-        status="ok", twin_status=["ok", "ok", "ok", "unstable"], rate_per_s=[-5, -5, -1, np.nan],
-        rate_se=0.1, consistency=[1, 1, 1, np.nan], saturation=[0, 0, 0.1, np.nan],
-        c_nl=0.5, c_m=0.4, c_nl_se=0.02, c_m_se=0.02,
+        n=4, spacing_m=0.1, status="ok", twin_status=["ok", "ok", "ok", "unstable"],
+        rate_per_s=[-5, -5, -1, np.nan], rate_se=0.1, consistency=[1, 1, 1, np.nan],
+        saturation=[0, 0, 0.1, np.nan], c_nl=0.5, c_m=0.4, c_nl_se=0.02, c_m_se=0.02,
     )  # fmt: skip
     apart = pd.DataFrame({"buckling_number": np.repeat(numbers, 3), "setup": "described"}).assign(
         time_s=np.tile([0.0, 1.0, 2.0], 4), separation_m=np.tile([1e-9, 1e-10, 1e-11], 4)
@@ -192,7 +193,9 @@ def test_the_figure_marks_unstable_pairs_in_every_panel_over_b(tmp_path):
     given = {"chaos_rates": table, "chaos_separations": apart, "chaos_floors": floors}
     figure = plotting.draw(given, "described", tmp_path / "chaos.png")
     assert (tmp_path / "chaos.pdf").exists()
+    assert_legible(figure)
+    assert plotting.ROUND_OFF == chaos.ROUND_OFF
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
-    assert [list(mark.get_xdata()) for mark in marks] == [[5.0]] * 3
+    assert [list(mark.get_xdata()) for mark in marks] == [[5.0]] * 4
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(given, "published", tmp_path / "none.png")

@@ -8,8 +8,10 @@ import xarray as xr
 from fiberweb import Scene, capacity, claims, crosshatch, dataset, features, groups, tables
 from fiberweb.config import Config
 from fiberweb.plotting import features as plotting
+from tests.unit.legible import assert_legible
 
 RATE = 25.0
+FLOORS = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.14, 0.41], "c_m": [0.09, 0.28]})
 SCORES = {  # C_nl, C_m of a network that agrees with every claim
     "all": (0.80, 0.50), "crossing_x": (0.55, 0.15), "crossing_y": (0.55, 0.20),
     "horizontal_midpoint_x": (0.60, 0.20), "horizontal_midpoint_y": (0.70, 0.45),
@@ -115,7 +117,7 @@ def test_greedy_rows_name_their_signals_and_end_with_all(study):
 
 
 def test_the_figure_marks_unstable_runs_and_shows_the_share(study, tmp_path):
-    made, _ = study
+    made = study[0] | {"features_floors": FLOORS}
     figure = plotting.draw(made, "described", tmp_path / "features.png")
     assert (tmp_path / "features.png").stat().st_size > 50_000
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
@@ -124,6 +126,7 @@ def test_the_figure_marks_unstable_runs_and_shows_the_share(study, tmp_path):
     needed = made["features_greedy"].groupby("target")["needed"].first()
     for count in needed:
         assert f"{count} signals\nkeep 95 %" in said
+    assert_legible(figure)
     assert "4×4 crosshatch (described setup)" in said and "verdicts" in said
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(made, "published", tmp_path / "none.png")

@@ -4,10 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.collections import PolyCollection
 from matplotlib.text import Text
 
 from fiberweb import Scene, capacity, crosshatch, dataset, narma, tables
 from fiberweb.plotting import narma as figure
+from tests.unit.legible import assert_legible
 
 RATE = 50.0
 
@@ -190,10 +192,13 @@ def test_figure_shows_every_readout_and_an_x_for_the_unstable(study, tmp_path):
     made = figure.draw(table, found, "described", tmp_path / "narma.png")
     assert (tmp_path / "narma.png").stat().st_size > 10_000 and (tmp_path / "narma.pdf").exists()
     text = " ".join(t.get_text() for t in made.findobj(Text))
-    for words in ("NARMA-10", "2×2", "3×3", "echo state, 16 nodes", "unstable run", "2×2 cross"):
+    for words in ("NARMA-10", "2×2", "3×3", "ESN\n16", "unstable run", "2×2 network", "Bias"):
         assert words in text
-    # three panels of violins, and three each of RMSE and interdecile range
-    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 9
+    # three panels each of violins, RMSE, interdecile range and bias
+    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 12
+    violins = [body for body in made.findobj(PolyCollection) if len(body.get_paths())]
+    assert len(violins) == 3 * 6  # a network, two of echo states, and three of the input alone
+    assert_legible(made)
     assert made.get_size_inches()[0] == pytest.approx(180 / 25.4)
 
 
@@ -201,7 +206,7 @@ def test_figure_of_one_unstable_run_is_drawn(study, tmp_path):
     found, table = study
     alone = table[(table["status"] == "unstable") & (table["order"] == 2)]
     made = figure.draw(alone, found, "described", tmp_path / "narma.png")
-    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 4
+    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 5
     with pytest.raises(ValueError, match="no run of the published setup"):
         figure.draw(alone, found, "published", tmp_path / "none.png")
 

@@ -7,6 +7,7 @@ import xarray as xr
 
 from fiberweb import Scene, capacity, crosshatch, dataset, noise, tables
 from fiberweb.plotting import noise as plotting
+from tests.unit.legible import assert_legible
 
 RATE = 50.0
 LEVELS = [1e-6, 1e-4]
@@ -109,6 +110,7 @@ def test_the_figure_shows_both_totals_and_refuses_a_setup_without_runs(table, tm
     figure = plotting.draw(given, "described", tmp_path / "noise.png")
     assert (tmp_path / "noise.png").exists() and (tmp_path / "noise.pdf").exists()
     assert len(figure.axes) == 2
+    assert_legible(figure)
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
     assert len(marks) == 2
     with pytest.raises(ValueError, match="no run of the published setup"):

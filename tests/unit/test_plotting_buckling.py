@@ -13,6 +13,7 @@ from fiberweb.dataset import response
 from fiberweb.engines.base import Numerics, Recording
 from fiberweb.mesh import build
 from fiberweb.plotting import buckling, film, style
+from tests.unit.legible import assert_legible
 
 PEAK = 300  # sample at which the columns bulge most
 
@@ -68,10 +69,14 @@ def test_the_figure_is_a_double_column(drawn):
 def test_snapshots_are_half_knots_about_the_widest_bulge(drawn):
     words = said(drawn[0])
     for time in ("1.00", "1.10", "1.20", "1.30", "1.40"):
-        assert sum(f"t = {time} s" in text for text in words) == 2
-    for number in ("B = 0.9", "B = 1.2"):
+        assert sum(f"$t$ = {time} s\n$u$" in text for text in words) == 2
+    for number in (r"$\mathcal{B}$ = 0.9", r"$\mathcal{B}$ = 1.2"):
         assert any(text.startswith(number) or f" {number} " in text for text in words)
     assert sum(rf"\mathbf{{{letter}}}" in text for letter in "abcd" for text in words) == 4
+
+
+def test_no_text_overlaps(drawn):
+    assert_legible(drawn[0])
 
 
 def test_the_driven_point_alone_has_its_colour(drawn):

@@ -7,6 +7,7 @@ import xarray as xr
 
 from fiberweb import Scene, capacity, crosshatch, dataset, robustness, tables
 from fiberweb.plotting import robustness as plotting
+from tests.unit.legible import assert_legible
 
 ALPHAS = [1e-3, 1.0, 100.0]
 
@@ -72,8 +73,13 @@ def test_the_figure_gives_the_spread_of_seeds_beside_their_errors(alphas, tmp_pa
     }
     figure = plotting.draw(given, "described", tmp_path / "robustness.png")
     said = " ".join(text.get_text() for ax in figure.axes for text in ax.texts)
-    assert "sd 0.020\nse 0.013" in said and "sd 0.020\nse 0.017" in said
+    assert "sd 0.020, se 0.013" in said and "sd 0.020, se 0.017" in said
+    assert_legible(figure)
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable" and artist.get_xdata())
     assert [list(mark.get_xdata()) for mark in marks] == [[2], [2]]
+    given["robustness"] = seeds[seeds["seed"] == 2]
+    alone = plotting.draw(given, "described", tmp_path / "alone.png")
+    said = [text.get_text() for ax in alone.axes for text in ax.texts]
+    assert "se 0.013" in said and not any("nan" in text for text in said)
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(given, "published", tmp_path / "none.png")

@@ -84,6 +84,7 @@ rule features_figure:
             "network.py",
             "plotting/__init__.py",
             "plotting/features.py",
+            "plotting/parts.py",
             "plotting/style.py",
             "plotting/sweep.py",
             "tables.py",

@@ -162,6 +162,7 @@ rule study_figure:
         code=lambda wildcards: code(
             "buckling.py",
             "plotting/__init__.py",
+            "plotting/parts.py",
             "plotting/style.py",
             "plotting/sweep.py",
             f"plotting/{wildcards.study}.py",
