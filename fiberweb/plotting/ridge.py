@@ -138,6 +138,7 @@ def _onset(ax: Axes, onset: pd.DataFrame, colour: dict) -> None:
             gid="onset", **ONSET,
         )  # fmt: skip
     ax.set(yscale="log", xlabel="Spacing (mm)", ylabel=f"Onset {sweep.BUCKLING}")
+    ax.set_xlim(_edges(1e3 * np.array(list(colour)))[[0, -1]])
     low, high = ax.get_ylim()
     ax.set_ylim(min(low, 0.45), max(high, 2.2))  # room for ticks about 1
     sweep.logarithmic(ax.yaxis)
