@@ -6,7 +6,6 @@ Drawing only: every number comes from the tables.
 
 from __future__ import annotations
 
-import itertools
 from pathlib import Path
 
 import numpy as np
@@ -153,7 +152,9 @@ def _numbers(
     points = dense.dropna(subset=["misfit"]).sort_values("misfit", kind="stable")
     default = (points[list(GRID)] == roles.loc["default", list(GRID)]).all(axis=1)
     points = pd.concat([points[:SHOWN], points[SHOWN:][default[SHOWN:]]])
-    axes = part.subplots(1, len(SYMBOLS) + len(sweep.TOTALS), sharey=True)
+    axes = part.subplots(
+        1, len(SYMBOLS) + len(sweep.TOTALS), sharey=True, width_ratios=[1, 1, 1, 1, 1.3, 1.3]
+    )
     for ax, column in zip(axes, SYMBOLS, strict=False):
         value, tolerance = roles.loc[["paper", "tolerance"], column]
         ax.axvspan(value - tolerance, value + tolerance, **TOLERANCE)
@@ -174,9 +175,10 @@ def _numbers(
     }
     handles |= {
         f"{n}×{n}": Line2D([], [], ls="", **look) for n, look in _looks(runs).items()
-    } | sweep.key(points)  # fmt: skip
-    if floors is None:
-        del handles["readouts made of the input alone"]
+    }  # fmt: skip
+    handles["± standard error"] = Line2D([], [], marker="_", ms=6, mew=0.7, ls="", color=style.INK)
+    if floors is not None:
+        handles["readouts made of the input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
     part.legend(
         handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
         handlelength=1.4, columnspacing=1.2,
@@ -198,10 +200,13 @@ def _list(ax: Axes, points: pd.DataFrame, default: pd.Series) -> None:
 
 
 def _looks(runs: pd.DataFrame) -> dict[int, dict]:
-    """Colour and marker of each size."""
+    """Of each size: upright marks, that do not hide the short bars across them."""
     sizes = sorted(runs["n"].unique())
-    shades = zip(sizes, style.colours(len(sizes)), itertools.cycle("oDs^"))
-    return {n: {"color": shade, "marker": marker, "ms": 3} for n, shade, marker in shades}
+    look = {"marker": "|", "ms": 5, "mew": 1.0}
+    return {
+        n: look | {"color": shade}
+        for n, shade in zip(sizes, style.colours(len(sizes)), strict=True)
+    }
 
 
 def _total(

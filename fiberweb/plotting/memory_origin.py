@@ -25,12 +25,13 @@ AUTHORS_TABLE = pd.DataFrame(
 )
 NONE, SPRING, FIBRE, NUMERICS = (style.GREY, *style.colours(4)[:3])
 TABLE = {"color": style.INK, "marker": "_", "ms": 10, "mew": 1.4, "ls": ""}
-OFF = {"mfc": "white", "mew": 0.8, "ls": ":"}
+MARK = {"ms": 2.8, "lw": 0.8, "elinewidth": 0.7}  # small, for the bars to show
+OFF = {"mfc": "white", "mew": 0.6, "ls": ":"}
 ASIDE = 2.5  # points to the side of marks that nearly agree
 TINTED = "Numerics (the authors' crossings)"
 TINT = "#f1efe9"  # behind what is numerics
 AUTHORS_ELEMENT = 10.0  # mm
-KEY_LINE = 0.084  # share of the height of panel a
+KEY_LINE = 0.072  # share of the height of panel a
 AXIS = (-0.03, 1.03)
 COLUMNS = {  # of panel b: title and label of x
     K: ("Physics:\ncrossing spring", "$k$ (N/m)"),
@@ -60,12 +61,12 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     floor = tables["memory_origin_floors"]
     with style.applied():
         if setup == "published":
-            figure = style.figure(style.DOUBLE, 58.0)
+            figure = style.figure(style.DOUBLE, 66.0)
             style.letter(figure, "a", "Memory of the authors' networks (published setup)")
             _totals(figure, _filter_series(rows), rows, floor)
         else:
-            figure = style.figure(style.DOUBLE, 160.0)
-            top, bottom = figure.subfigures(2, 1, height_ratios=[58, 102])
+            figure = style.figure(style.DOUBLE, 174.0)
+            top, bottom = figure.subfigures(2, 1, height_ratios=[66, 108])
             style.letter(top, "a", "What carries memory (described setup)")
             style.letter(bottom, "b", "One thing at a time")
             families = _families(rows)
@@ -149,7 +150,7 @@ def _totals(part: SubFigure, kinds: dict, rows: pd.DataFrame, floor: pd.DataFram
         for place, (frame, look) in enumerate(series.values()):
             aside = ASIDE * (place - (len(series) - 1) / 2)
             stable = frame[frame["status"] == "ok"].sort_values("n")
-            sweep.points(ax, stable, "n", name, aside, **look)
+            sweep.points(ax, stable, "n", name, aside, **MARK | look)
         known = AUTHORS_TABLE.reindex(sizes)
         ax.plot(sizes, known[name], zorder=4, **TABLE)
         ax.set(xlabel="Fibres in each direction, $N$", ylabel=sweep.TOTALS[name])
@@ -167,7 +168,7 @@ def _totals(part: SubFigure, kinds: dict, rows: pd.DataFrame, floor: pd.DataFram
 
 def _keys(ax: Axes, keys: dict[str, dict[str, Line2D]]) -> None:
     """Legends one below the other, each under its title; that of the numerics is tinted."""
-    above = 1.08
+    above = 1.05
     for title, handles in keys.items():
         legend = ax.legend(
             handles.values(), handles.keys(), title=title, loc="upper left", alignment="left",
@@ -225,7 +226,7 @@ def _lines(ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict) -> Non
     """A capacity over column x, one line a size."""
     for n, frame in rows.groupby("n"):
         frame = frame[frame["status"] == "ok"].sort_values(x)
-        sweep.points(ax, frame, x, name, marker="o", ms=2.6, color=colour[n])
+        sweep.points(ax, frame, x, name, marker="o", ms=2.2, lw=0.8, color=colour[n])
     style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", x]))
 
 
@@ -236,11 +237,12 @@ def _filter(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
     rows = rows.assign(element=_element(rows))
     stable = rows[rows["status"] == "ok"].sort_values("element")
     for step, marker in _markers(rows).items():
-        for place, (n, frame) in enumerate(_of(stable, **{STEP: step}).groupby("n")):
-            look = {"marker": marker, "color": colour[n], "shift": ASIDE * (place - 1)}
+        for n, frame in _of(stable, **{STEP: step}).groupby("n"):
+            aside = ASIDE * (list(colour).index(n) - (len(colour) - 1) / 2)
+            look = {"marker": marker, "color": colour[n], "shift": aside}
             on, off = frame[frame[FILTER] > 0], frame[frame[FILTER] == 0]
-            sweep.points(ax, off, "element", name, ms=4.8, **look | OFF)
-            sweep.points(ax, on, "element", name, ms=2.6, **look)
+            sweep.points(ax, off, "element", name, ms=3.6, **look | OFF)
+            sweep.points(ax, on, "element", name, ms=2.2, **look)
     ax.set_xlim(0.0, 1.15 * rows["element"].max())
     style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", "element"]))
 
@@ -254,8 +256,8 @@ def _key(part: SubFigure, colour: dict, filtered: pd.DataFrame) -> None:
     handles = {f"$N$ = {n}": Line2D([], [], color=shade) for n, shade in colour.items()}
     ink = {"color": style.INK, "ls": ""}
     for step, marker in _markers(filtered).items():
-        handles[f"filter on, {1e6 * step:g} µs"] = Line2D([], [], marker=marker, ms=2.6, **ink)
-    handles["filter off"] = Line2D([], [], marker="o", ms=4.8, color=style.INK, **OFF)
+        handles[f"filter on, {1e6 * step:g} µs"] = Line2D([], [], marker=marker, ms=2.2, **ink)
+    handles["filter off"] = Line2D([], [], marker="o", ms=3.6, color=style.INK, **OFF)
     handles["setup's own value"] = Line2D([], [], color=style.FAINT, lw=2.5)
     handles["numerics"] = Patch(color=TINT)
     part.legend(

@@ -116,7 +116,7 @@ def _over_buckling(
     """Points over B, joined up to the first buckled run: past it neighbours have little to do with
     each other, and lines would hide the points."""
     ax.axvline(1.0, color=style.INK, lw=1.0, zorder=1)
-    sweep.lines(ax, ridge, "buckling_number", name, colour, ls="", ms=1.8)
+    sweep.lines(ax, ridge, "buckling_number", name, colour, ls="", ms=2.0)
     stable = ridge[ridge["status"] == "ok"].sort_values("buckling_number")
     for spacing, frame in stable.groupby("spacing_m"):
         joined = frame[: (frame["buckling_number"] < 1.0).sum() + 1]

@@ -49,7 +49,9 @@ def points(
     """
     if shift:
         look["transform"] = offset_copy(ax.transData, ax.figure, x=shift, units="points")
-    ax.errorbar(*rows[[x, name, f"{name}_se"]].to_numpy(float).T, elinewidth=0.5, **look)
+    # marks without an edge, and bars on hollow ones, because the errors are small
+    look = {"mew": 0.0, "elinewidth": 0.5, "barsabove": True} | look
+    ax.errorbar(*rows[[x, name, f"{name}_se"]].to_numpy(float).T, **look)
 
 
 def lines(
@@ -58,7 +60,7 @@ def lines(
 ) -> None:  # fmt: skip
     """A capacity over column x, one line a spacing, each shifted from the one before; and the X's
     of unstable runs, each in the colour of its spacing at the foot of the axes."""
-    look = {"marker": "o", "ms": 2.2, "lw": 0.7} | look
+    look = {"marker": "o", "ms": 2.6, "lw": 0.7} | look
     for place, (spacing, frame) in enumerate(rows.sort_values(x).groupby("spacing_m")):
         aside = shift * (place - (len(colour) - 1) / 2)
         points(ax, frame, x, name, aside, color=colour[spacing], **look)
