@@ -15,11 +15,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
-from fiberweb.plotting import style
-from fiberweb.plotting.sweep import TOTALS, rows_of
+from fiberweb.plotting import style, sweep
 
 GRID = K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
 SIZE = 8  # N of the crosshatch that has a misfit
@@ -34,13 +33,17 @@ MISFITS = style.SEQUENTIAL.reversed()  # small ones light, so that ink marks sho
 DARK = 0.45  # share of the map above which numbers on it are white
 BEST = {"marker": "*", "ms": 6, "color": style.INK, "mew": 0, "ls": ""}
 OUTLINE = {"edgecolor": style.INK, "facecolor": "none", "linewidth": 1.4}
+THIN = {"linewidth": 1.0}  # in the list
+TOLERANCE = {"color": style.FAINT, "alpha": 0.4, "lw": 0}
+PAPER = {"color": style.GREY, "lw": 0.8}
 
 
 def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
     """Draw the calibration and write it as PNG and PDF.
 
     Args:
-        tables: "calibration" and "calibration_check", from `fiberweb.calibration`.
+        tables: "calibration" and "calibration_check", from `fiberweb.calibration`; and, to show
+            what readouts of the input alone score, "ridge_floors", whose runs have the same input.
         setup: rows of other setups are left out.
         path: of the figure.
 
@@ -50,16 +53,17 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    runs = rows_of(tables["calibration"], "calibration", setup)
+    runs = sweep.rows_of(tables["calibration"], "calibration", setup)
     roles = tables["calibration_check"].set_index("role")
+    floors = tables.get("ridge_floors")
     dense = runs[runs["n"] == SIZE]
     with style.applied():
-        figure = style.figure(style.DOUBLE, 108.0)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[58, 50])
+        figure = style.figure(style.DOUBLE, 116.0)
+        top, bottom = figure.subfigures(2, 1, height_ratios=[58, 58])
         style.letter(top, "a", "Misfit of the 8×8 crosshatch to the paper's four numbers")
-        style.letter(bottom, "b", "The grid's best points (band: paper ± tolerance)")
+        style.letter(bottom, "b", "The grid's best points")
         _maps(top, dense, roles)
-        _numbers(bottom, runs, dense, roles)
+        _numbers(bottom, runs, dense, roles, floors)
         style.save(figure, path)
     return figure
 
@@ -81,12 +85,12 @@ def _maps(part: SubFigure, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
             if role in roles.index and roles.loc[role, GAMMA] == gamma:
                 _mark(ax, role, roles.loc[role], ks, nus)
         _unstable(ax, rows, ks, nus)
-        ax.set(title=f"γ = {gamma:g} /s", xlabel="Crossing stiffness $k$ (N/m)")
+        ax.set(title=rf"$\gamma$ = {gamma:g} /s", xlabel="Crossing stiffness $k$ (N/m)")
         ax.set_xticks(range(len(ks)), [f"{k:g}" for k in ks])
         ax.set_yticks(range(len(nus)), [f"{nu:g}" for nu in nus])
         ax.tick_params(length=0)
         ax.spines[:].set_visible(False)
-    axes[0].set_ylabel("Crossing damping ν (N s/m)")
+    axes[0].set_ylabel(r"Crossing damping $\nu$ (N s/m)")
     bar = part.colorbar(
         ScalarMappable(norm, MISFITS), ax=axes, pad=0.02, aspect=16,
         ticks=LogLocator(subs=(1, 2, 5)), format=StrMethodFormatter("{x:g}"),
@@ -100,10 +104,6 @@ def _maps(part: SubFigure, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
     }
     if (dense["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    _key(part, handles)
-
-
-def _key(part: SubFigure, handles: dict) -> None:
     legend = part.legend(
         handles.values(), handles.keys(), ncols=len(handles), loc="upper right",
         bbox_to_anchor=(0.995, 1.0), handlelength=1.0, columnspacing=1.2,
@@ -115,8 +115,14 @@ def _cells(ax: Axes, grid: np.ndarray, norm: LogNorm) -> None:
     for (row, column), value in np.ndenumerate(grid):
         if np.isfinite(value):
             colour = "white" if norm(value) > DARK else style.INK
-            text = f"{value:.1f}" if value < 100 else f"{value:.0f}"
-            ax.text(column, row, text, color=colour, ha="center", va="center", fontsize=6.5)
+            ax.text(
+                column, row, _misfit(value), color=colour, ha="center", va="center", fontsize=6.5
+            )
+
+
+def _misfit(value: float) -> str:
+    """Three digits at most, so that maps and list agree."""
+    return f"{value:.{max(0, 2 - int(np.log10(max(value, 1.0))))}f}"
 
 
 def _mark(ax: Axes, role: str, point: pd.Series, ks: list[float], nus: list[float]) -> None:
@@ -138,44 +144,85 @@ def _unstable(ax: Axes, rows: pd.DataFrame, ks: list[float], nus: list[float]) -
         ax.plot(*np.transpose(places), gid="unstable", **style.UNSTABLE)
 
 
-def _numbers(part: SubFigure, runs: pd.DataFrame, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
+def _numbers(
+    part: SubFigure, runs: pd.DataFrame, dense: pd.DataFrame, roles: pd.DataFrame,
+    floors: pd.DataFrame | None,
+) -> None:  # fmt: skip
     """The four numbers of the best points over the paper's, and C_nl and C_m of each size."""
     points = dense.dropna(subset=["misfit"]).sort_values("misfit", kind="stable")
     default = (points[list(GRID)] == roles.loc["default", list(GRID)]).all(axis=1)
     points = pd.concat([points[:SHOWN], points[SHOWN:][default[SHOWN:]]])
-    axes = part.subplots(1, len(SYMBOLS) + 1, sharey=True, width_ratios=[1, 1, 1, 1, 1.5])
-    places = -np.arange(len(points))
+    axes = part.subplots(
+        1, len(SYMBOLS) + len(sweep.TOTALS), sharey=True, width_ratios=[1, 1, 1, 1, 1.3, 1.3]
+    )
     for ax, column in zip(axes, SYMBOLS, strict=False):
         value, tolerance = roles.loc[["paper", "tolerance"], column]
-        ax.axvspan(value - tolerance, value + tolerance, color=style.FAINT, alpha=0.4, lw=0)
-        ax.axvline(value, color=style.GREY, lw=0.8)
-        ax.plot(points[column], places, "o", color=style.INK, ms=3)
+        ax.axvspan(value - tolerance, value + tolerance, **TOLERANCE)
+        ax.axvline(value, **PAPER)
+        ax.plot(points[column], -np.arange(len(points)), "o", color=style.INK, ms=3)
         ax.set_xlabel(SYMBOLS[column])
         ax.margins(0.12, 0.1)
         ax.locator_params(axis="x", nbins=3)
-    _key(part, _totals(axes[-1], points, runs, places))
-    labels = [
-        f"{row[K]:g}, {row[NU]:g}, {row[GAMMA]:g}   {row['misfit']:.2f}"
-        + ("  □" if default[index] else "     ")
-        for index, row in points.iterrows()
-    ]
-    axes[0].set_yticks(places, labels)
-    axes[0].set_title("$k$, ν, γ   misfit     ", loc="right", x=-0.04, ha="right", fontsize=6.5)
+    for ax, name in zip(axes[len(SYMBOLS) :], sweep.TOTALS, strict=True):
+        _total(ax, name, points, runs, floors)
+    _list(axes[0], points, default)
     for ax in axes:
         ax.grid(axis="y", color=style.FAINT, lw=0.4)
         ax.set_axisbelow(True)
-
-
-def _totals(ax: Axes, points: pd.DataFrame, runs: pd.DataFrame, places: np.ndarray) -> dict:
-    """C_nl and C_m of every size at the same points; returns the handles of a key."""
-    sizes = sorted(runs["n"].unique())
-    for colour, n in zip(style.colours(len(sizes)), sizes, strict=True):
-        same = points[list(GRID)].merge(runs[runs["n"] == n], on=list(GRID), how="left")
-        for (name, _), marker in zip(TOTALS.items(), "oD", strict=True):
-            ax.plot(same[name], places, marker, color=colour, ms=3)
-    ax.set(xlabel="Capacity", xlim=(0, 1))
-    return {
-        f"{symbol} {n}×{n}": Line2D([], [], color=colour, marker=marker, ms=3, ls="")
-        for marker, symbol in zip("oD", TOTALS.values(), strict=True)
-        for colour, n in zip(style.colours(len(sizes)), sizes, strict=True)
+    handles = {
+        "defaults": Rectangle((0, 0), 1, 1, **OUTLINE | THIN),
+        "paper ± tolerance": (Patch(**TOLERANCE), Line2D([], [], **PAPER)),
     }
+    handles |= {
+        f"{n}×{n}": Line2D([], [], ls="", **look) for n, look in _looks(runs).items()
+    }  # fmt: skip
+    handles["± standard error"] = Line2D([], [], marker="_", ms=6, mew=0.7, ls="", color=style.INK)
+    if floors is not None:
+        handles["readouts made of the input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
+    part.legend(
+        handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
+        handlelength=1.4, columnspacing=1.2,
+    )  # fmt: skip
+
+
+def _list(ax: Axes, points: pd.DataFrame, default: pd.Series) -> None:
+    """Parameters and misfit of each point beside the axes; those of the defaults are outlined, as
+    their cell is."""
+    labels = [
+        f"{row[K]:g}, {row[NU]:g}, {row[GAMMA]:g}   {_misfit(row['misfit'])}"
+        for _, row in points.iterrows()
+    ]
+    ax.set_yticks(-np.arange(len(points)), labels)
+    ax.set_title(r"$k$, $\nu$, $\gamma$   misfit", loc="right", x=-0.06, ha="right", fontsize=6.5)
+    for label, outlined in zip(ax.get_yticklabels(), default[points.index], strict=True):
+        if outlined:
+            label.set_bbox({**OUTLINE, **THIN, "pad": 1.5})
+
+
+def _looks(runs: pd.DataFrame) -> dict[int, dict]:
+    """Of each size: upright marks, that do not hide the short bars across them."""
+    sizes = sorted(runs["n"].unique())
+    look = {"marker": "|", "ms": 5, "mew": 1.0}
+    return {
+        n: look | {"color": shade}
+        for n, shade in zip(sizes, style.colours(len(sizes)), strict=True)
+    }
+
+
+def _total(
+    ax: Axes, name: str, points: pd.DataFrame, runs: pd.DataFrame, floors: pd.DataFrame | None
+) -> None:
+    """A capacity of every size at the points, with standard errors and floors."""
+    places = -np.arange(len(points))
+    for n, look in _looks(runs).items():
+        same = points[list(GRID)].merge(runs[runs["n"] == n], on=list(GRID), how="left")
+        ax.errorbar(same[name], places, xerr=same[f"{name}_se"], ls="", elinewidth=0.7, **look)
+    ax.set(xlabel=sweep.TOTALS[name], xlim=(0, 1), xticks=[0, 0.5, 1])
+    if floors is not None:
+        for value in floors[name]:
+            ax.axvline(value, zorder=0, **sweep.FLOOR_LINE)
+        for row, (value, label) in enumerate(sweep.floor_labels(floors, name, 0.1)):
+            ax.annotate(  # one above the other, because the column is narrow
+                label, (value, 1.0), (0.0, 1.5 + 7.5 * (row % 2)), textcoords="offset points",
+                xycoords=("data", "axes fraction"), ha="center", fontsize=6,
+            )  # fmt: skip

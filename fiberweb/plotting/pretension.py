@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from fiberweb.plotting import style, sweep
 
 PAPERS_LEAST = 0.01  # N
+ASIDE = 1.2  # points from one spacing to the next
 
 
 def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
@@ -35,15 +36,13 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     floors = tables["ridge_floors"]
     colour = sweep.colours(rows["spacing_m"])
     with style.applied():
-        figure = style.figure(style.DOUBLE, 66.0)
+        figure = style.figure(style.DOUBLE, 76.0)
         axes = figure.subplots(1, 2)
         for ax, letter, name in zip(axes, "ab", sweep.TOTALS):
-            sweep.lines(ax, rows, "tension_N", name, colour)
-            ax.set_ylim(0.0, sweep.top(rows, floors, name))
-            ax.set(xlabel="Pretension $F_t$ (N)", ylabel=sweep.TOTALS[name])
-            _tensions(ax, rows["tension_N"])
+            _tensions(ax, sorted(rows["tension_N"].unique()))
+            sweep.lines(ax, rows, "tension_N", name, colour, ASIDE)
+            sweep.scale(ax, rows, floors, name)
             sweep.floors(ax, floors, name)
-            sweep.typical_error(ax, rows, name)
             title = f"{sweep.TOTALS[name]} over pretension ({setup} setup)"
             ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
         sweep.spacing_bar(figure, axes, colour)
@@ -53,10 +52,14 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     return figure
 
 
-def _tensions(ax: Axes, tensions: pd.Series) -> None:
-    """A log scale that a tension of zero, which a study may have, does not break."""
-    if (tensions > 0).all():
-        ax.set_xscale("log")
-        sweep.logarithmic(ax.xaxis)
+def _tensions(ax: Axes, tensions: list[float]) -> None:
+    """Ticks at the tensions, on a log scale that a tension of zero, which a study may have, does
+    not break."""
+    if tensions[0] > 0:
+        ax.set(xscale="log", xlim=(tensions[0] / 1.5, tensions[-1] * 1.5))
     else:
         ax.set_xscale("symlog", linthresh=PAPERS_LEAST)
+        ax.set_xlim(-0.5 * PAPERS_LEAST, 1.5 * max(tensions[-1], PAPERS_LEAST))
+    ax.set_xticks(tensions, [f"{tension:g}" for tension in tensions])
+    ax.minorticks_off()
+    ax.set_xlabel("Pretension $F_\\mathrm{t}$ (N)")

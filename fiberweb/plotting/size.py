@@ -16,7 +16,11 @@ from matplotlib.lines import Line2D
 from fiberweb.plotting import style, sweep
 
 RUN = ["force_choice", "spacing_m", "n"]
-MARKERS = {"last": {"color": style.INK, "mfc": style.FAINT}, "first": {"color": "#2c6e8f"}}
+MARKERS = {  # the shorter step lies upon the longer one
+    "last": {"marker": "o", "ms": 4.5, "color": style.INK, "mfc": style.FAINT},
+    "first": {"marker": "s", "ms": 2.2, "color": "#2c6e8f"},
+}
+ASIDE = 0.9  # points from one spacing to the next
 
 
 def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
@@ -46,7 +50,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     colour = sweep.colours(size["spacing_m"])
     letters = iter("abcdefgh")
     with style.applied():
-        figure = style.figure(style.DOUBLE, 66.0 * (over_size + len(twice)))
+        figure = style.figure(style.DOUBLE, 76.0 * (over_size + len(twice)))
         parts = iter(figure.subfigures(over_size + len(twice), 1, squeeze=False)[:, 0])
         if over_size:
             part = next(parts)
@@ -71,9 +75,9 @@ def _chosen_for(name: str, rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _over_size(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
-    sweep.lines(ax, rows, "n", name, colour)
-    ax.set_xticks(sorted(rows["n"].unique()))
-    ax.margins(x=0.08)
+    sweep.lines(ax, rows, "n", name, colour, ASIDE)
+    sizes = sorted(rows["n"].unique())
+    ax.set(xticks=sizes, xlim=(sizes[0] - 1.0, sizes[-1] + 1.0))
     ax.set_xlabel("Fibres in each direction, $N$")
 
 
@@ -84,11 +88,10 @@ def _over_spacing(ax: Axes, rows: pd.DataFrame, name: str) -> dict[str, Line2D]:
         one = rows.drop_duplicates(RUN, keep=keep).sort_values("spacing_m")
         step = f"{1e6 * one['time_step_s'].median():.3g} µs"
         unstable = one["status"] == "unstable"
-        (handles[f"step of {step}"],) = ax.plot(
-            1e3 * one["spacing_m"], one[name], marker="o" if keep == "last" else "s",
-            ms=4.5 if keep == "last" else 2.2, ls="", mew=0.8, **marker,
-        )  # fmt: skip
-        style.mark_unstable(ax, list(1e3 * one.loc[unstable, "spacing_m"]))
+        one = one.assign(spacing_mm=1e3 * one["spacing_m"])
+        sweep.points(ax, one, "spacing_mm", name, ls="", mew=0.8, **marker)
+        handles[f"step of {step}"] = Line2D([], [], ls="", mew=0.8, **marker)
+        style.mark_unstable(ax, list(one.loc[unstable, "spacing_mm"]))
     ax.set_xlabel("Spacing (mm)")
     return handles
 
@@ -99,11 +102,9 @@ def _finish(
 ) -> None:  # fmt: skip
     """Scales, floors, titles and the key of one row of panels."""
     for ax, name in zip(part.axes, sweep.TOTALS):
-        ax.set_ylim(0.0, sweep.top(rows, floors, name))
-        ax.set_ylabel(sweep.TOTALS[name])
+        sweep.scale(ax, rows, floors, name)
         title = f"{sweep.TOTALS[name]} at the best force for it ({of} setup)"
         ax.set_title(rf"$\mathbf{{{next(letters)}}}$   {title}", loc="left")
         sweep.floors(ax, floors, name)
-        sweep.typical_error(ax, _chosen_for(name, rows), name)
     handles = handles | sweep.key(rows)
     part.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)

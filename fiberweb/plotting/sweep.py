@@ -1,4 +1,4 @@
-"""What the figures of swept force, size and tension share: one line a spacing, and the floors."""
+"""What figures of capacities share: points with bars, one line a spacing, and the floors."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.transforms import offset_copy
 
 from fiberweb.plotting import style
 
@@ -20,6 +21,8 @@ TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
 FLOORS = {"u": "$u$", "derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$"}
 FLOOR_LINE = {"color": style.GREY, "lw": 0.7, "ls": (0, (4, 2))}
 LABEL_GAP = 0.075  # share of the axis: floors closer than this share a label
+BUCKLING = r"$\mathcal{B}$"
+ENDS = {"c_nl": 1.0, "c_m": 0.7}  # of the scales, so that force, size and tension compare
 
 
 def rows_of(table: pd.DataFrame, study: str, setup: str) -> pd.DataFrame:
@@ -36,12 +39,31 @@ def colours(spacings: Sequence[float]) -> dict[float, np.ndarray]:
     return dict(zip(found, style.colours(len(found)), strict=True))
 
 
-def lines(ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict) -> None:
-    """A capacity over column x, one line a spacing, and the X's of unstable runs, each in the
-    colour of its spacing at the foot of the axes."""
-    for spacing, frame in rows.groupby("spacing_m"):
-        frame = frame.sort_values(x)
-        ax.plot(frame[x], frame[name], marker="o", ms=2.2, lw=0.9, color=colour[spacing])
+def points(
+    ax: Axes, rows: pd.DataFrame, x: str, name: str, shift: float = 0.0, **look: object
+) -> None:
+    """A capacity over column x with its standard errors as bars.
+
+    A shift (typographic points) to the side parts bars that would lie on one another; it is not
+    in the data, so set the limits of x yourself.
+    """
+    if shift:
+        look["transform"] = offset_copy(ax.transData, ax.figure, x=shift, units="points")
+    # marks without an edge, and bars on hollow ones, because the errors are small
+    look = {"mew": 0.0, "elinewidth": 0.5, "barsabove": True} | look
+    ax.errorbar(*rows[[x, name, f"{name}_se"]].to_numpy(float).T, **look)
+
+
+def lines(
+    ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict, shift: float = 0.0,
+    **look: object,
+) -> None:  # fmt: skip
+    """A capacity over column x, one line a spacing, each shifted from the one before; and the X's
+    of unstable runs, each in the colour of its spacing at the foot of the axes."""
+    look = {"marker": "o", "ms": 2.6, "lw": 0.7} | look
+    for place, (spacing, frame) in enumerate(rows.sort_values(x).groupby("spacing_m")):
+        aside = shift * (place - (len(colour) - 1) / 2)
+        points(ax, frame, x, name, aside, color=colour[spacing], **look)
     unstable = rows[rows["status"] == "unstable"]
     for at, frame in unstable.groupby(x):
         for place, spacing in enumerate(sorted(frame["spacing_m"].unique())):
@@ -56,15 +78,9 @@ def top(rows: pd.DataFrame, floors: pd.DataFrame, name: str) -> float:
     return np.ceil(20 * np.fmax(rows[name].max(), floors[name].max()) + 0.2) / 20
 
 
-def typical_error(ax: Axes, rows: pd.DataFrame, name: str) -> None:
-    """The median standard error of a capacity as one bar in the lower left corner: bars on every
-    point would hide one another."""
-    error = rows[f"{name}_se"].median()
-    bottom = 0.03 * ax.get_ylim()[1]
-    ax.plot(
-        [0.018] * 2, [bottom, bottom + 2 * error], color=style.INK, lw=0.9,
-        transform=ax.get_yaxis_transform(), gid="error",
-    )  # fmt: skip
+def scale(ax: Axes, rows: pd.DataFrame, floors: pd.DataFrame, name: str) -> None:
+    """The scale and the label of a capacity: the same in every figure that its values fit."""
+    ax.set(ylim=(0.0, max(ENDS[name], top(rows, floors, name))), ylabel=TOTALS[name])
 
 
 def logarithmic(axis: Axis) -> None:
@@ -77,23 +93,38 @@ def logarithmic(axis: Axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def floors(ax: Axes, table: pd.DataFrame, name: str) -> None:
+def floors(ax: Axes, table: pd.DataFrame, name: str, **look: object) -> None:
     """What readouts of the input alone score, labelled beside the axes; call it last, because
     labels that would overlap on the final scale are put together."""
-    gap = LABEL_GAP * np.ptp(ax.get_ylim())
+    for value in table[name]:
+        ax.axhline(value, **{"zorder": 0} | FLOOR_LINE | look)
+    for value, label in floor_labels(table, name, LABEL_GAP * np.ptp(ax.get_ylim())):
+        ax.annotate(
+            label, (1.0, value), (2.0, 0.0), xycoords=("axes fraction", "data"),
+            textcoords="offset points", va="center", fontsize=6,
+        )  # fmt: skip
+
+
+def floor_labels(table: pd.DataFrame, name: str, gap: float) -> list[tuple[float, str]]:
+    """Place and words of the labels of the floors; floors closer than gap have one in common."""
     groups: list[list[tuple[float, str]]] = []
     for value, readout in sorted(zip(table[name], table["readout"], strict=True)):
-        ax.axhline(value, zorder=0, **FLOOR_LINE)
         if groups and value - groups[-1][-1][0] < gap:
             groups[-1].append((value, readout))
         else:
             groups.append([(value, readout)])
-    for group in groups:
-        labels = [FLOORS.get(readout, readout) for _, readout in reversed(group)]
-        ax.annotate(
-            "\n".join(labels), (1.01, float(np.mean([value for value, _ in group]))),
-            xycoords=("axes fraction", "data"), va="center", fontsize=6, color=style.GREY,
-        )  # fmt: skip
+    return [
+        (
+            float(np.mean([value for value, _ in group])),
+            ", ".join(FLOORS.get(readout, readout) for _, readout in sorted(group, key=_simplest)),
+        )
+        for group in groups
+    ]
+
+
+def _simplest(floor: tuple[float, str]) -> int:
+    """Order of the floors in a label: the input itself comes first."""
+    return [*FLOORS, floor[1]].index(floor[1])
 
 
 def spacing_bar(figure: FigureBase, axes: Sequence[Axes], colour: dict) -> None:
@@ -109,11 +140,12 @@ def spacing_bar(figure: FigureBase, axes: Sequence[Axes], colour: dict) -> None:
 
 
 def key(rows: pd.DataFrame) -> dict[str, Line2D]:
-    """Legend entries that these figures share, by label."""
+    """Legend entries that figures of capacities share, by label."""
     handles = {"readouts made of the input alone": Line2D([], [], **FLOOR_LINE)}
     if rows[["c_nl_se", "c_m_se"]].notna().any(axis=None):  # too short a run has none
-        bar = Line2D([], [], marker="|", ms=7, mew=0.9, ls="", color=style.INK)
-        handles["± median standard error"] = bar
+        handles["± standard error"] = Line2D(
+            [], [], marker="|", ms=7, mew=0.5, ls="", color=style.INK
+        )
     if (rows["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
     return handles

@@ -5,9 +5,11 @@ import itertools
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.text import Text
 
 from fiberweb import calibration as grid
+from fiberweb import config, studies
 from fiberweb.plotting import calibration, memory_origin, style
 
 FLOORS = pd.DataFrame(
@@ -55,6 +57,7 @@ def points():
     rows = [
         dict(zip((*grid.GRID, "n"), point, strict=True))
         | {"setup": "described", "status": "ok", "c_nl": 0.8, "c_m": 0.4}
+        | {"c_nl_se": 0.01, "c_m_se": 0.02}
         | dict.fromkeys(grid.TARGETS, 0.9)
         | {"misfit": point[0] + point[1] + point[2] if point[3] == 8 else np.nan}
         for point in itertools.product(*axes)
@@ -62,7 +65,9 @@ def points():
     rows[-1] |= dict.fromkeys(("misfit", *grid.TARGETS, "c_nl", "c_m"), np.nan)
     rows[-1]["status"] = "unstable"
     table = pd.DataFrame(rows)
-    return {"calibration": table, "calibration_check": grid.check(table)}
+    return {
+        "calibration": table, "calibration_check": grid.check(table), "ridge_floors": FLOORS
+    }  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -116,16 +121,56 @@ def test_no_text_overlaps(drawn, name, monkeypatch):
 
 def test_an_unstable_filter_run_is_an_x_at_its_element_length(drawn):
     marks = marked(drawn["memory_origin"], "unstable")
-    assert [mark.get_xdata() for mark in marks] == [pytest.approx([5.0])] * 2  # C_m and C_nl
+    assert [mark.get_xdata() for mark in marks] == [pytest.approx([5.0])] * 2  # C_nl and C_m
     assert "unstable run" in said(drawn["memory_origin"])
 
 
 def test_each_carrier_is_a_line_over_n(drawn, origin):
     """The filter's line is of the mesh and step that the run without it has, of every N."""
-    ax = drawn["memory_origin"].subfigs[0].axes[0]
+    ax = drawn["memory_origin"].subfigs[0].axes[1]
     heights = {tuple(bar[0].get_ydata()) for bar in ax.containers}
     assert heights == {(0.2,) * 3, (0.4,) * 3, (0.6,) * 3, (0.1,) * 3}
     assert all(list(bar[0].get_xdata()) == [2, 4, 8] for bar in ax.containers)
+
+
+@pytest.mark.parametrize("setup", ["described", "published"])
+def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
+    rows = []
+    for point in studies.memory_origin(config.load(), setup, None, False):
+        made, numerics = point.scene, point.numerics or {}
+        crossings = (made.crossing_stiffness, made.crossing_damping, made.damping)
+        engine, elements, step = numerics.values() or ("kirchhoff", 4, 7e-5)
+        at = {"setup": setup, "spacing_m": made.network.spacing}
+        rows.append(
+            run(made.network.n, *crossings, made.filter_order, engine, elements, step, **at)
+        )
+    tables = {"memory_origin": pd.DataFrame(rows), "memory_origin_floors": FLOORS}
+    figure = memory_origin.draw(tables, setup, "unsaved")
+    nonlinear, memory = figure.findobj(
+        lambda artist: isinstance(artist, Axes) and "Fibres" in artist.get_xlabel()
+    )
+    for ax in (nonlinear, memory):
+        assert len(ax.containers) == (5 if setup == "described" else 2)
+        assert all(set(bar[0].get_xdata()) == {2, 4, 8} for bar in ax.containers)
+
+
+def test_every_capacity_of_panel_b_has_its_standard_error_as_a_bar(drawn):
+    for name, size in (("memory_origin", 0.01), ("calibration", None)):
+        bars = [
+            segment
+            for ax in drawn[name].subfigs[1].axes
+            for container in ax.containers
+            for segment in container.lines[2][0].get_segments()
+        ]
+        assert len(bars) > 12
+        if size:
+            assert all(np.ptp(bar[:, 1]) == pytest.approx(2 * size) for bar in bars)
+
+
+def test_floors_of_the_calibration_may_be_missing(points, unsaved):
+    tables = {name: table for name, table in points.items() if name != "ridge_floors"}
+    figure = calibration.draw(tables, "described", "unsaved")
+    assert "readouts made of the input alone" not in said(figure)
 
 
 def test_the_published_setup_compares_filter_on_and_off(origin, unsaved):
@@ -135,7 +180,7 @@ def test_the_published_setup_compares_filter_on_and_off(origin, unsaved):
     table = table.assign(setup="published", elements_per_section="authors")
     tables = origin | {"memory_origin": table}
     figure = memory_origin.draw(tables, "published", "published.png")
-    heights = [tuple(bar[0].get_ydata()) for bar in figure.axes[0].containers]
+    heights = [tuple(bar[0].get_ydata()) for bar in figure.axes[1].containers]
     assert heights == [(0.6,) * 3, (0.1,) * 3]
     assert "filter off" in said(figure)
     with pytest.raises(ValueError, match="no run of the described setup"):

@@ -5,11 +5,13 @@ import itertools
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
+from fiberweb import claims
 from fiberweb.buckling import critical_force
 from fiberweb.onset import onsets
-from fiberweb.plotting import pretension, ridge, size, style
+from fiberweb.plotting import pretension, ridge, size, style, sweep
 
 FLOORS = pd.DataFrame(
     {
@@ -146,10 +148,39 @@ def test_cells_of_the_ridge_lie_about_their_force_and_spacing(unsaved):
     table = tables["ridge"]
     expected = table.pivot(index="force_N", columns="spacing_m", values="c_nl").to_numpy()
     np.testing.assert_array_equal(np.ma.filled(mesh.get_array(), np.nan), expected)
-    onset = artists(figure, "onset")  # in both panels over B
-    assert [float(mark.get_xdata()[0]) for mark in onset] == pytest.approx(
-        2 * list(tables["ridge_onset"]["onset_B"])
-    )
+    marks = [mark for mark in artists(figure, "onset") if isinstance(mark, Line2D)]
+    onset = [tuple(mark.get_xydata()[0]) for mark in marks]
+    assert [at for at, _ in onset] == pytest.approx(list(1e3 * SPACINGS))
+    assert [b for _, b in onset] == pytest.approx(list(tables["ridge_onset"]["onset_B"]))
+
+
+def test_the_band_of_the_onset_is_the_one_of_the_claim():
+    (claimed,) = (claim["range"] for claim in claims.load() if claim["id"] == "R2")
+    assert list(ridge.CLAIMED) == claimed
+
+
+@pytest.mark.parametrize("name", ["ridge", "size", "pretension"])
+def test_every_capacity_has_its_standard_error_as_a_bar(unsaved, name):
+    draw, tables, setup = CASES[name]
+    tables = tables()
+    figure = draw(tables, setup, "unsaved")
+    stable = tables[name].dropna(subset=["c_nl", "c_m"])
+    for column in ("c_nl", "c_m"):
+        expected = [(c - e, c + e) for c, e in stable[[column, f"{column}_se"]].to_numpy()]
+        panels = [ax for ax in figure.axes if ax.get_ylabel() == sweep.TOTALS[column]]
+        shown = [
+            tuple(bar[:, 1].round(9))
+            for ax in panels for container in ax.containers
+            for bar in container.lines[2][0].get_segments() if len(bar)
+        ]  # fmt: skip
+        assert set(shown) <= {tuple(pair) for pair in np.round(expected, 9)}
+        assert len(shown) >= len(stable) // 2  # the size's are of one choice of the force
+
+
+def test_floors_that_nearly_agree_share_one_label():
+    labels = sweep.floor_labels(FLOORS, "c_nl", 0.05)
+    assert [value for value, _ in labels] == pytest.approx([0.14, 0.41])
+    assert [words for _, words in labels] == ["$u$, $u\\,…\\,u'''$", "$u\\,…\\,u^3$"]
 
 
 def test_a_thinned_ridge_leaves_cells_out(unsaved):
