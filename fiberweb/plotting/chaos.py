@@ -76,14 +76,14 @@ def _shown(buckling: pd.Series) -> list[float]:
 
 def _separations(ax: Axes, apart: pd.DataFrame, rows: pd.DataFrame) -> None:
     """Separation of some pairs over time, and where it is but round-off."""
-    for number, colour in parts.colour_of(_shown(rows["buckling_number"])).items():
+    for number, colour in sweep.colours(_shown(rows["buckling_number"])).items():
         pair = apart[apart["buckling_number"] == number]
         ax.plot(pair["time_s"], pair["separation_m"], color=colour, lw=0.7, label=f"{number:.3g}")
     ax.set(yscale="log", xlabel="Time (s)", ylabel="Separation (m)")
     ax.margins(x=0.01)
     _round_off(ax, ROUND_OFF * (rows["spacing_m"] * (rows["n"] + 1)).max())
     legend = ax.legend(
-        title=f"Buckling\nnumber {parts.BUCKLING}", loc="upper left", bbox_to_anchor=(1.0, 1.0)
+        title=f"Buckling\nnumber {sweep.BUCKLING}", loc="upper left", bbox_to_anchor=(1.0, 1.0)
     )
     legend.set(alignment="left")
 
@@ -100,7 +100,7 @@ def _round_off(ax: Axes, level: float) -> None:
 
 def _over_buckling(ax: Axes, rows: pd.DataFrame) -> None:
     """A log axis of B with its buckling at 1."""
-    ax.set(xscale="log", xlabel=f"Buckling number {parts.BUCKLING}")
+    ax.set(xscale="log", xlabel=f"Buckling number {sweep.BUCKLING}")
     ticks = [0.2, 0.5, 1, 2, 5]
     ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     ax.minorticks_off()
@@ -130,6 +130,6 @@ def _handles(unstable: bool) -> dict[str, Line2D]:
     handles = {
         "consistency: correlation of the twins": Line2D([], [], **CONSISTENCY),
         "saturation: separation / that of unrelated motions": Line2D([], [], **SATURATION),
-        f"buckling at {parts.BUCKLING} = 1": Line2D([], [], **BUCKLING),
+        f"buckling at {sweep.BUCKLING} = 1": Line2D([], [], **BUCKLING),
     }
     return handles | parts.floor_and_unstable(unstable)

@@ -216,7 +216,7 @@ def _handles(table: pd.DataFrame, colour: dict) -> dict:
     handles = {}
     for force, rows in table.groupby("force_N"):
         verdict = ", verdicts" if rows["verdict"].any() else ""
-        label = f"{force:g} N ({parts.BUCKLING} = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
+        label = f"{force:g} N ({sweep.BUCKLING} = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
         handles[label] = Patch(facecolor=colour[force], **EDGE)
     handles["± standard error"] = Line2D([], [], color=style.INK, marker="|", ms=7, mew=0.8, ls="")
     handles["shuffled split"] = Line2D([], [], **SHUFFLED)

@@ -38,7 +38,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         ValueError: the table has no run of this setup.
     """
     rows = sweep.rows_of(tables["noise"], "noise", setup)
-    colour = parts.colour_of(rows["n"])
+    colour = sweep.colours(rows["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 70.0)
         axes = figure.subplots(1, 2)

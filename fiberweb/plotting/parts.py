@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
@@ -13,19 +11,11 @@ from matplotlib.lines import Line2D
 from fiberweb.plotting import style, sweep
 
 ROW = 6  # entries of a key that fit side by side
-BUCKLING = r"$\mathcal{B}$"
-INPUT_ALONE = "readouts made of the input alone"
 CAPACITIES = {"c_nl": "Nonlinear capacity", "c_m": "Memory capacity"}
 
 TARGET = {"color": "black", "lw": 0.7, "ls": "--"}
 # light and thick, to show under the dashes of the target
 PREDICTION = {"color": style.SEQUENTIAL(0.6), "lw": 1.6}
-
-
-def colour_of(values: Iterable) -> dict:
-    """Colour of each value, such as N, dark to light as it grows."""
-    found = sorted(set(values))
-    return dict(zip(found, style.colours(len(found)), strict=True))
 
 
 def letter(ax: Axes, name: str, title: str, pad: float = 3.0) -> None:
@@ -52,7 +42,7 @@ def key_beside_title(part: FigureBase, handles: dict[str, Artist]) -> None:
 
 def floor_and_unstable(unstable: bool) -> dict[str, Line2D]:
     """Legend entries of floors, and of unstable runs if there are any."""
-    handles = {INPUT_ALONE: Line2D([], [], **sweep.FLOOR_LINE)}
+    handles = {sweep.INPUT_ALONE: Line2D([], [], **sweep.FLOOR_LINE)}
     if unstable:
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
     return handles

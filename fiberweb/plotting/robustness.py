@@ -40,7 +40,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     seeds = sweep.rows_of(tables["robustness"], "robustness", setup)
     alphas = sweep.rows_of(tables["robustness_alpha"], "robustness_alpha", setup)
     floors = tables["robustness_floors"]
-    colour = parts.colour_of(seeds["n"])
+    colour = sweep.colours(seeds["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 122.0)
         rows = figure.subfigures(2, 1)

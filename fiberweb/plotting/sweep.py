@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pandas as pd
@@ -20,6 +20,7 @@ from fiberweb.plotting import style
 TOTALS = {"c_nl": r"$C_\mathrm{nl}$", "c_m": r"$C_\mathrm{m}$"}
 FLOORS = {"u": "$u$", "derivatives": "$u\\,…\\,u'''$", "powers": "$u\\,…\\,u^3$"}
 FLOOR_LINE = {"color": style.GREY, "lw": 0.7, "ls": (0, (4, 2))}
+INPUT_ALONE = "readouts made of the input alone"
 LABEL_GAP = 0.075  # share of the axis: floors closer than this share a label
 BUCKLING = r"$\mathcal{B}$"
 ENDS = {"c_nl": 1.0, "c_m": 0.7}  # of the scales, so that force, size and tension compare
@@ -33,9 +34,9 @@ def rows_of(table: pd.DataFrame, study: str, setup: str) -> pd.DataFrame:
     return rows
 
 
-def colours(spacings: Sequence[float]) -> dict[float, np.ndarray]:
-    """Colour of each spacing (m), dark to light as it grows."""
-    found = sorted(set(spacings))
+def colours(values: Iterable[float]) -> dict[float, np.ndarray]:
+    """Colour of each value, such as N or a spacing, dark to light as it grows."""
+    found = sorted(set(values))
     return dict(zip(found, style.colours(len(found)), strict=True))
 
 
@@ -128,12 +129,20 @@ def _simplest(floor: tuple[float, str]) -> int:
 
 
 def spacing_bar(figure: FigureBase, axes: Sequence[Axes], colour: dict) -> None:
-    """The key of the spacings beside the axes: one field of colour each, in mm."""
+    """The key of the spacings (m), in mm."""
+    in_mm = {1e3 * spacing: shade for spacing, shade in colour.items()}
+    colour_bar(figure, axes, in_mm, "Spacing (mm)", pad=0.015, fraction=0.03, aspect=25)
+
+
+def colour_bar(
+    figure: FigureBase, axes: Sequence[Axes], colour: dict, label: str, **place: float
+) -> None:
+    """A key beside the axes: one field of colour for each value."""
     edges = np.arange(len(colour) + 1) - 0.5
-    shades = ScalarMappable(BoundaryNorm(edges, len(colour)), ListedColormap(colour.values()))
-    bar = figure.colorbar(shades, ax=axes, pad=0.015, fraction=0.03, aspect=25)
-    bar.set_label("Spacing (mm)")
-    bar.set_ticks(range(len(colour)), labels=[f"{1e3 * spacing:g}" for spacing in colour])
+    shades = ScalarMappable(BoundaryNorm(edges, len(colour)), ListedColormap(list(colour.values())))
+    bar = figure.colorbar(shades, ax=axes, **place)
+    bar.set_label(label)
+    bar.set_ticks(range(len(colour)), labels=[f"{value:g}" for value in colour])
     bar.ax.tick_params(length=0)
     bar.minorticks_off()
     bar.outline.set_linewidth(0.4)
@@ -141,7 +150,7 @@ def spacing_bar(figure: FigureBase, axes: Sequence[Axes], colour: dict) -> None:
 
 def key(rows: pd.DataFrame) -> dict[str, Line2D]:
     """Legend entries that figures of capacities share, by label."""
-    handles = {"readouts made of the input alone": Line2D([], [], **FLOOR_LINE)}
+    handles = {INPUT_ALONE: Line2D([], [], **FLOOR_LINE)}
     if rows[["c_nl_se", "c_m_se"]].notna().any(axis=None):  # too short a run has none
         handles["± standard error"] = Line2D(
             [], [], marker="|", ms=7, mew=0.5, ls="", color=style.INK

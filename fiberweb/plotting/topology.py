@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
-from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
@@ -73,7 +71,7 @@ def draw(
         figure = style.figure(style.DOUBLE, sum(heights))
         rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
         letters = iter("abcd")
-        colour = parts.colour_of(table["n"])
+        colour = sweep.colours(table["n"])
         style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
         _networks(rows[0], table, setup)
         for row, topology in zip(rows[1:], present, strict=False):
@@ -162,7 +160,8 @@ def _capacities(
     by_order.set(xlabel="Legendre order", ylabel="Capacity $c$", xticks=range(2, 11, 2))
     by_lag.set(xlabel="Recall lag (s)", xlim=(0, points["at"][points["target"] == "lag"].max()))
     by_lag.tick_params(labelleft=False)
-    _sizes_bar(part, [by_order, by_lag], {n: colour[n] for n in sizes})
+    shades = {n: colour[n] for n in sizes}
+    sweep.colour_bar(part, [by_order, by_lag], shades, "$N$", pad=0.01, fraction=0.04, aspect=14)
     for ax, (name, symbol) in zip((nonlinear, memory), sweep.TOTALS.items(), strict=True):
         _total(ax, runs, name, colour)
         ax.set(xlabel="$N$", ylabel=symbol, xticks=sizes)
@@ -173,18 +172,6 @@ def _capacities(
             sweep.floors(ax, floors, name)
 
 
-def _sizes_bar(part: SubFigure, axes: list[Axes], colour: dict) -> None:
-    """The key of N beside the curves: one field of colour each."""
-    norm = BoundaryNorm(np.arange(len(colour) + 1) - 0.5, len(colour))
-    shades = ScalarMappable(norm, ListedColormap(list(colour.values())))
-    bar = part.colorbar(shades, ax=axes, pad=0.01, fraction=0.04, aspect=14)
-    bar.set_ticks(range(len(colour)), labels=[str(n) for n in colour])
-    bar.set_label("$N$")
-    bar.ax.tick_params(length=0)
-    bar.minorticks_off()
-    bar.outline.set_linewidth(0.4)
-
-
 def _marks(table: pd.DataFrame, floors: pd.DataFrame | None) -> dict[str, Line2D]:
     """Legend entries of the totals."""
     handles = {
@@ -193,7 +180,7 @@ def _marks(table: pd.DataFrame, floors: pd.DataFrame | None) -> dict[str, Line2D
     }
     entries = parts.floor_and_unstable((table["status"] == "unstable").any())
     if floors is None:
-        del entries[parts.INPUT_ALONE]
+        del entries[sweep.INPUT_ALONE]
     return handles | entries
 
 
