@@ -11,7 +11,7 @@ DRAWN_FROM = {
     "size": ["size", "ridge_floors"],
     "pretension": ["pretension", "ridge_floors"],
     "memory_origin": ["memory_origin", "memory_origin_floors"],
-    "calibration": ["calibration", "calibration_check"],
+    "calibration": ["calibration", "calibration_check", "ridge_floors"],
     "noise": ["noise", "noise_floors"],
     "chaos": ["chaos_rates", "chaos_separations", "chaos_floors"],
     "robustness": ["robustness", "robustness_alpha", "robustness_floors"],
