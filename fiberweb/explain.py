@@ -15,7 +15,7 @@ CAPACITY = {2: 0.02, 4: 0.004, 8: 0.0006, 16: 0.00004}
 # trajectories by this much; it falls as (d/s)^2.
 SHEAR, SHEAR_AT = 1.8e-3, 50.0
 NANOSECONDS = {"kirchhoff": 3.0, "cosserat": 4.0, "elastica": 500.0}  # an element and step
-CHAOS = 1.75  # buckling number above which twins part, by the study `chaos`
+CHAOS = 1.5  # buckling number above which twins part, by the study `chaos`
 PLANE = 0.5  # buckling number above which a push that stays turns fibres out of the plane
 STUBBY = 10.0  # spacing in diameters below which shear is no longer small
 BREAKING = 0.1  # of EA: larger forces strain a fibre more than a beam can be
