@@ -11,6 +11,7 @@ from matplotlib.text import Text
 from fiberweb import calibration as grid
 from fiberweb import config, studies
 from fiberweb.plotting import calibration, memory_origin, style
+from tests.unit.legible import assert_legible
 
 FLOORS = pd.DataFrame(
     {
@@ -101,22 +102,8 @@ def test_png_and_pdf_are_written(drawn, name):
 
 
 @pytest.mark.parametrize("name", ["memory_origin", "calibration"])
-def test_no_text_overlaps(drawn, name, monkeypatch):
-    figure, boxes = drawn[name], {}
-
-    def draw(text, renderer, original=Text.draw):
-        if text.get_visible() and text.get_text().strip():
-            boxes[text] = text.get_window_extent(renderer)
-        original(text, renderer)
-
-    monkeypatch.setattr(Text, "draw", draw)
-    with style.applied():
-        figure.canvas.draw()
-    assert len(boxes) > 40
-    for text, box in boxes.items():
-        assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1, text
-    for (a, box_a), (b, box_b) in itertools.combinations(boxes.items(), 2):
-        assert not box_a.padded(-0.5).overlaps(box_b.padded(-0.5)), (a, b)
+def test_no_text_overlaps(drawn, name):
+    assert_legible(drawn[name])
 
 
 def test_an_unstable_filter_run_is_an_x_at_its_element_length(drawn):
