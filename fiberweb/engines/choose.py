@@ -8,10 +8,10 @@ from fiberweb.scene import Scene
 ENGINES = ("kirchhoff", "cosserat", "elastica")
 ACCURACIES = {"draft": 2, "standard": 4, "fine": 8, "reference": 16}  # elements per section
 SAFETY = 0.9  # of the linear limit: compression and tension stiffen a fibre a little
-# The same above a share of EA in force or tension. Under load runs were found to end at 0.83 to
-# 1.0 of the linear limit (found_loaded_s of the stability table).
+# The same above a share of EA in force or tension. Under load steps of 0.87 to 1.0 of the linear
+# limit were found to be too long (found_loaded_s of the stability table).
 VIOLENT = {1e-3: 0.7, 1e-2: 0.4}
-STUBBIEST = 5.0  # spacing in diameters at which leaving out shear costs 0.18 (see `explain`)
+STUBBIEST = 5.0  # spacing in diameters at which leaving out shear costs some 0.2 (see `explain`)
 
 
 def resolve(

@@ -12,7 +12,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fiberweb.plotting import style
+from fiberweb.plotting import style, sweep
 
 MARKERS = {"kirchhoff": "o", "cosserat": "s", "elastica": "D"}
 COLOUR = dict(zip(MARKERS, style.colours(3), strict=True))
@@ -165,7 +165,7 @@ def _growth(axes, plane: pd.DataFrame) -> None:
         axes[1].plot(rows["time"], rows["out_of_plane_m"] / rows["in_plane_m"], color=colour)
     axes[0].set(yscale="log", ylabel="Largest |z| (mm)")
     axes[1].set(yscale="log", ylabel="Largest |z| / largest in-plane")
-    axes[0].legend(title="B", ncols=2)
+    axes[0].legend(title=sweep.BUCKLING, ncols=2)
     for ax in axes:
         ax.set_xlabel("Time (s)")
 
@@ -182,6 +182,8 @@ def draw_stability(table: pd.DataFrame, drift: pd.DataFrame, path: str | Path) -
         for ax, engine in zip(axes.flat[7:], ("kirchhoff", "cosserat")):
             _ratios(ax, table, engine)
             _drift(ax, drift[drift["engine"] == engine])
+        for letter, ax in zip("abcdefghi", axes.flat):
+            ax.set_title(rf"$\mathbf{{{letter}}}$   {ax.get_title(loc='left')}", loc="left")
         handles = [
             axes[0, 0].plot([], [], MARKERS[e], color=COLOUR[e], mfc="none", mew=0.8)[0]
             for e in MARKERS
@@ -224,7 +226,7 @@ def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) 
         bad = rows["automatic_step_status"] != "ok"
         ax.plot(x[bad], 1e6 * rows.loc[bad, "predicted_s"], **style.UNSTABLE)
     ax.set(yscale="log", xscale="log", xlabel=label, ylabel="Limit (µs)")
-    ax.set_ylim(0.2 * table["found_s"].quantile(0.1) * 1e6, 2e6 * table["found_s"].max())
+    ax.set_ylim(0.5e6 * table[["predicted_s", found]].min().min(), 2e6 * table["found_s"].max())
     if column == "tension_N":
         ax.set_xscale("symlog", linthresh=0.1)
         ax.set_xlim(left=-0.02)

@@ -38,7 +38,7 @@ def test_shear_falls_with_slenderness():
     slender, stout = (
         lines(Scene(crosshatch(4, spacing=s)))["left out"].split("about ")[1] for s in (0.1, 0.02)
     )
-    assert "0.18 %" in slender and "4.5 %" in stout
+    assert "0.23 %" in slender and "5.8 %" in stout
 
 
 def test_step_is_below_its_limit():

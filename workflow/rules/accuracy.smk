@@ -130,7 +130,13 @@ rule stability:
 
 rule accuracy_figure:
     input:
-        code=code("plotting/__init__.py", "plotting/accuracy.py", "plotting/style.py", "tables.py"),
+        code=code(
+            "plotting/__init__.py",
+            "plotting/accuracy.py",
+            "plotting/style.py",
+            "plotting/sweep.py",
+            "tables.py",
+        ),
         tables=lambda wildcards: [
             f"<results>/tables/{name}.csv" for name in FIGURES[wildcards.name]
         ],
