@@ -139,7 +139,7 @@ def _row(scene, engine, mesh, steps, per_step, error, ratio) -> None:
 
 def kernel(setup: str, n: int) -> str:
     """ns an element and step of a whole run with the setup's own engine and mesh, median."""
-    scene = Scene(crosshatch(n, length=0.5), setup, duration=NEW_SECONDS / n)
+    scene = Scene(crosshatch(n, length=0.5), setup, duration=2 * NEW_SECONDS / n)
     numerics = resolve(scene)
     mesh, load = build(scene, numerics.elements_per_section), engines.load(numerics.engine)
     load.integrate(mesh, numerics)
