@@ -250,7 +250,7 @@ def _curve(ax: Axes, chosen: pd.DataFrame, scored: pd.DataFrame, target: str) ->
     kept = chosen.set_index("n_chosen").loc[needed, "kept"]
     ax.plot(needed, kept, "o", color=style.INK, ms=4, zorder=4)
     ax.text(
-        0.97, 0.6, f"{needed} signals\nkeep {share:.0%}".replace("%", " %"),
+        0.97, 0.4, f"{needed} signals\nkeep {share:.0%}".replace("%", " %"),
         transform=ax.transAxes, ha="right", va="top",
     )  # fmt: skip
     for group, marker in MARKED.items():
