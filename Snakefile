@@ -66,8 +66,7 @@ onstart:
 onsuccess:
     print(f"Done: figures in {RESULTS}/figures, tables in {RESULTS}/tables;")
     print(f"{RESULTS}/tables/claims.csv holds each claim of the paper against them.")
-    if (
-        "figures" in targets()
-    ):  # whether the described setup's defaults are still the grid's best
+    # whether the described setup's defaults are still the grid's best
+    if "figures" in targets():
         grid = f"{RESULTS}/tables/described/calibration.csv"
         subprocess.run([sys.executable, "-m", "fiberweb.calibration", grid], check=False)

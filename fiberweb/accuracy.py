@@ -159,8 +159,8 @@ def cases(n: int, length: float, buckling: float) -> list[Case]:
     listed += [Case("kirchhoff", elements=4, share=share, **about) for share in (0.45, 0.225)]
     listed += [Case("cosserat", elements=4, **about)]
     listed += [Case("cosserat", elements=8, **about)] if n < 8 else []
-    authors = [4, 8, None] if n < 8 else [4, None]
-    listed += [Case("elastica", elements=e, step=AUTHORS_STEP, **about) for e in authors[:-1]]
+    spatial = [4, 8] if n < 8 else [4]
+    listed += [Case("elastica", elements=e, step=AUTHORS_STEP, **about) for e in spatial]
     listed += [Case(e, elements=None, step=AUTHORS_STEP, **about) for e in ("cosserat", "elastica")]
     return listed
 

@@ -115,7 +115,9 @@ def draw_ladder(ladder: pd.DataFrame, plane: pd.DataFrame, path: str | Path) -> 
     with style.applied():
         made = style.figure(style.DOUBLE, 120.0)
         top, bottom = made.subfigures(2, 1, height_ratios=[62, 58])
-        style.letter(top, "a", "Each change against the rung above it (4×4, 100 mm, B = 0.8)")
+        style.letter(
+            top, "a", f"Each change against the rung above it (4×4, 100 mm, {sweep.BUCKLING} = 0.8)"
+        )
         style.letter(bottom, "b", "Out of the plane: a push that stays, towards the clamped ends")
         _changes(top.subplots(1, 2, sharey=True, width_ratios=[2, 1]), ladder)
         _growth(bottom.subplots(1, 2), plane)

@@ -178,7 +178,7 @@ def _numbers(
     }  # fmt: skip
     handles["± standard error"] = Line2D([], [], marker="_", ms=6, mew=0.7, ls="", color=style.INK)
     if floors is not None:
-        handles["readouts made of the input alone"] = Line2D([], [], **sweep.FLOOR_LINE)
+        handles[sweep.INPUT_ALONE] = Line2D([], [], **sweep.FLOOR_LINE)
     part.legend(
         handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
         handlelength=1.4, columnspacing=1.2,

@@ -74,3 +74,11 @@ def test_warnings(scene, words):
 def test_a_refusal_is_the_one_of_simulate():
     with pytest.raises(ValueError, match="accuracy = 'ultra' does not exist"):
         explain(PAPER, "ultra")
+
+
+def test_a_stubby_network_needs_an_engine_named():
+    """4.5 diameters: the dial refuses it, in words, and takes the engine that has shear."""
+    stubby = Scene(crosshatch(2, spacing=0.009))
+    with pytest.raises(ValueError, match=r"spacing = 0\.009 m: .* take a longer one, or engine"):
+        explain(stubby, "standard")
+    assert "cosserat engine" in lines(stubby, engine="cosserat")["choice"]
