@@ -36,7 +36,7 @@ test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest
 
 bench: $(STAMP) ## what a run and a job cost on this machine
-	$(VENV)/bin/python -m fiberweb.bench
+	$(VENV)/bin/python -m fiberweb.tools.bench
 
 env: $(STAMP) ## .venv alone, from envs/requirements.lock
 

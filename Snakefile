@@ -69,4 +69,4 @@ onsuccess:
     # whether the described setup's defaults are still the grid's best
     if "figures" in targets():
         grid = f"{RESULTS}/tables/described/calibration.csv"
-        subprocess.run([sys.executable, "-m", "fiberweb.calibration", grid], check=False)
+        subprocess.run([sys.executable, "-m", "fiberweb.studies.calibration.tables", grid], check=False)

@@ -2,7 +2,7 @@
 
     config = load("config/config.yaml", {"scene": {"duration": 20.0}})
 
-Defaults are the paper's. What is generated from the models is in `fiberweb.schema`.
+Defaults are the paper's. What is generated from the models is in `fiberweb.tools.schema`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from fiberweb.sections import (
     SetupsSection,
     key,
 )
-from fiberweb.study_sections import (
+from fiberweb.studies.sections import (
     BucklingSection,
     CalibrationSection,
     ChaosSection,

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from fiberweb.config import AUTHORS_SKIP, Config
-from fiberweb.scene import Scene
-from fiberweb.studies import STUDIES, Best
+from fiberweb.model.scene import Scene
+from fiberweb.studies.points import STUDIES, Best
 
 SETUPS = ("described", "published")
 # what a scene may have in place of its own without another limit of the step
@@ -31,7 +31,7 @@ class Run:
         scene: the physics.
         numerics: keyword arguments of `fiberweb.simulate` beside the scene.
         scoring: keyword arguments of `fiberweb.score` beside the response.
-        choice: where the study took the force from; see `fiberweb.studies.Point`.
+        choice: where the study took the force from; see `fiberweb.studies.points.Point`.
         name: what it is, and a hash of scene and numerics.
     """
 
@@ -58,7 +58,7 @@ class Run:
 
     def check(self) -> None:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""
-        from fiberweb.engines.choose import resolve
+        from fiberweb.simulation.plan import resolve
 
         try:
             resolve(self.scene, **self.numerics)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from fiberweb.scene import SETUPS, NotNegative, Positive, PositiveOrPinned, Scene
+from fiberweb.model.scene import SETUPS, NotNegative, Positive, PositiveOrPinned, Scene
 
 NETWORK = "Fiber network setup"
 CAPACITY = "Quantifying physical reservoir capacity"

@@ -1,21 +1,28 @@
-"""The engines: one file each, one signature `integrate(mesh, numerics) -> Recording`."""
+"""The engines: one file each, all offering what `fiberweb.engines.base.Engine` asks for."""
 
 from __future__ import annotations
 
 from importlib import import_module
 
+# one line an engine; each is imported only when needed, since each has its own weight
+ENGINES = {
+    "kirchhoff": "fiberweb.engines.kirchhoff",
+    "cosserat": "fiberweb.engines.cosserat",
+    "elastica": "fiberweb.engines.elastica",
+}
+
 
 def load(name: str):
-    """The module of an engine; imported only when needed, since each has its own weight."""
-    return import_module(f"fiberweb.engines.{name}")
+    """The module of an engine, which is an `fiberweb.engines.base.Engine`."""
+    return import_module(ENGINES[name])
 
 
 def warmup() -> None:
     """Compile every kernel into the persistent cache, by running each engine for an instant."""
     from fiberweb.engines.base import Numerics
-    from fiberweb.mesh import build
-    from fiberweb.network import crosshatch
-    from fiberweb.scene import Scene
+    from fiberweb.model.mesh import build
+    from fiberweb.model.network import crosshatch
+    from fiberweb.model.scene import Scene
 
     for setup, engine in (
         ("described", "kirchhoff"),

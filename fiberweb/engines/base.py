@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fiberweb.mesh import Mesh
-from fiberweb.scene import Scene
+from fiberweb.model.mesh import Mesh
+from fiberweb.model.scene import Scene
 
 AUTHORS_STEP = 5e-6  # s
 CHUNK = 250  # samples between two returns to Python
@@ -20,7 +20,7 @@ class Numerics(NamedTuple):
 
     Attributes:
         engine: "kirchhoff", "cosserat" or "elastica".
-        elements_per_section: see `fiberweb.mesh.build`; None is the authors' mesh.
+        elements_per_section: see `fiberweb.model.mesh.build`; None is the authors' mesh.
         time_step: s.
     """
 

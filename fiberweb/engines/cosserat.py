@@ -52,7 +52,7 @@ from fiberweb.engines.laplace import (
     laplace_filter,
 )
 from fiberweb.engines.layout import Layout, Strips, lay_out, packed, strips
-from fiberweb.mesh import Mesh
+from fiberweb.model.mesh import Mesh
 
 SHEAR_FACTOR = 27.0 / 28.0  # alpha_c of a round section at Poisson's ratio 1/2, as PyElastica's
 

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from fiberweb.engines.jit import kernel
 from fiberweb.engines.layout import Layout, Strips
-from fiberweb.mesh import Mesh
+from fiberweb.model.mesh import Mesh
 
 
 def joint_operators(mesh: Mesh, layout: Layout, strip: Strips, step: float):

@@ -20,7 +20,7 @@ from fiberweb.engines.base import (
 )
 from fiberweb.engines.books import drive_value
 from fiberweb.engines.cosserat import refuse
-from fiberweb.mesh import Mesh
+from fiberweb.model.mesh import Mesh
 
 MM, MICRONEWTON = 1e3, 1e6  # a metre in mm; a newton in g mm / s^2
 GRAM_PER_SECOND = 1e3  # of one N s/m, and of one N/m per second

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from fiberweb.engines.source import source_hash
+from fiberweb.source import source_hash
 
 
 def _cache_folder() -> Path:

@@ -70,7 +70,7 @@ from fiberweb.engines.kirchhoff_passes import (
     turn_pass,
 )
 from fiberweb.engines.layout import Layout, Strips, lay_out, packed, strips
-from fiberweb.mesh import Mesh
+from fiberweb.model.mesh import Mesh
 
 GAP = 2  # ghosts between fibres: the moment reaches two nodes beyond its own
 

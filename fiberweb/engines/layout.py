@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fiberweb.mesh import Mesh
+from fiberweb.model.mesh import Mesh
 
 LINE = 8  # doubles in a cache line
 _AWAY = 1000  # elements

@@ -18,7 +18,7 @@ from fiberweb.engines.cosserat import SHEAR_FACTOR
 from fiberweb.engines.crossings import joint_groups
 from fiberweb.engines.kirchhoff import fourth_order_layout, spline_matrix
 from fiberweb.engines.layout import Layout, lay_out
-from fiberweb.mesh import Mesh
+from fiberweb.model.mesh import Mesh
 
 CAUTION = 1.0 - 3e-4  # the eigenvalue is found to 1e-4, from below
 

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from fiberweb import capacity, schema
 from fiberweb.config import HORIZON, NumericsSection, check_folders, load
-from fiberweb.engines.choose import ACCURACIES, ENGINES
 from fiberweb.runs import SETUPS, STUDIES, Run, check, example, run_table, runs
-from fiberweb.studies import CHOICES
+from fiberweb.scoring import capacity
+from fiberweb.simulation.plan import ACCURACIES, ENGINES
+from fiberweb.studies.points import CHOICES
+from fiberweb.tools import schema
 
 ROOT = Path(__file__).parents[2]
 PAPER = ROOT / "config" / "config.yaml"

@@ -14,9 +14,10 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from fiberweb import config, dataset
+from fiberweb import config
 from fiberweb.runs import STUDIES, runs
-from fiberweb.tables import best_unbuckled, read_best
+from fiberweb.scoring.tables import best_unbuckled, read_best
+from fiberweb.simulation import dataset
 
 ROOT = Path(__file__).parents[2]
 COPIED = ("Snakefile", "config", "envs", "fiberweb", "profiles", "workflow")
@@ -366,7 +367,9 @@ def imported(file):
     names = set()
     for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("fiberweb"):
-            if node.module == "fiberweb.tables" and [a.name for a in node.names] == ["write"]:
+            if node.module == "fiberweb.scoring.tables" and [a.name for a in node.names] == [
+                "write"
+            ]:
                 continue  # how a table is written is no reason to measure or simulate again
             names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "import_module":

@@ -30,7 +30,7 @@ def ridge_best(setup):
 
 def best_forces(path):
     """What the ridge's checkpoint found, for `runs`."""
-    from fiberweb.tables import read_best  # with xarray and SciPy, a second few calls need to spend
+    from fiberweb.scoring.tables import read_best  # with xarray and SciPy, a second few calls need to spend
 
     return read_best(path)
 

@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.plotting import accuracy
-from fiberweb.tables import read
+from fiberweb.scoring.tables import read
+from fiberweb.studies.accuracy import figure as accuracy
 
 to_log(snakemake.log[0])
 draw = {

@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.dataset import load
-from fiberweb.plotting.buckling import animate, draw
+from fiberweb.simulation.dataset import load
+from fiberweb.studies.buckling.figure import animate, draw
 
 to_log(snakemake.log[0])
 responses = [load(path) for path in snakemake.input.responses]

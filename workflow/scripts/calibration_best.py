@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.calibration import check, verdict
-from fiberweb.tables import read, write
+from fiberweb.scoring.tables import read, write
+from fiberweb.studies.calibration.tables import check, verdict
 
 to_log(snakemake.log[0])
 made = check(read(snakemake.input.table))

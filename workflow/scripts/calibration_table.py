@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.calibration import table
-from fiberweb.tables import write
+from fiberweb.scoring.tables import write
+from fiberweb.studies.calibration.tables import table
 
 to_log(snakemake.log[0])
 write(table(snakemake.input.capacities), snakemake.output[0])

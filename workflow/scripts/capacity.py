@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.capacity import score
-from fiberweb.dataset import load, save
+from fiberweb.scoring.capacity import score
+from fiberweb.simulation.dataset import load, save
 
 to_log(snakemake.log[0])
 print("run", snakemake.wildcards.run)

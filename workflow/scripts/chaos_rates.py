@@ -2,7 +2,8 @@
 
 from logs import to_log
 
-from fiberweb import chaos, tables
+from fiberweb.scoring import tables
+from fiberweb.studies.chaos import tables as chaos
 
 to_log(snakemake.log[0])
 source = snakemake.input

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from logs import to_log
 
-from fiberweb.claims import evaluate
-from fiberweb.tables import read, write
+from fiberweb.claims.judge import evaluate
+from fiberweb.scoring.tables import read, write
 
 to_log(snakemake.log[0])
 tables = {Path(path).stem: read(path) for path in snakemake.input.tables}

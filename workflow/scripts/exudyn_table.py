@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.exudyn_check import table
-from fiberweb.tables import write
+from fiberweb.scoring.tables import write
+from fiberweb.validation.exudyn_check import table
 
 to_log(snakemake.log[0])
 write(table(), snakemake.output[0])

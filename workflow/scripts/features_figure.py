@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.plotting.features import draw
-from fiberweb.tables import read
+from fiberweb.scoring.tables import read
+from fiberweb.studies.features.figure import draw
 
 to_log(snakemake.log[0])
 source = snakemake.input

@@ -2,7 +2,8 @@
 
 from logs import to_log
 
-from fiberweb import features, tables
+from fiberweb.scoring import tables
+from fiberweb.studies.features import tables as features
 
 to_log(snakemake.log[0])
 made = features.greedy_table(snakemake.input.response, **snakemake.params)

@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb.tables import merge, write
+from fiberweb.scoring.tables import merge, write
 
 to_log(snakemake.log[0])
 write(merge(snakemake.input.tables), snakemake.output[0])

@@ -2,9 +2,9 @@
 
 from logs import to_log
 
-from fiberweb.accuracy import ladder
-from fiberweb.limits import out_of_plane
-from fiberweb.tables import write
+from fiberweb.scoring.tables import write
+from fiberweb.validation.accuracy import ladder
+from fiberweb.validation.limits import out_of_plane
 
 to_log(snakemake.log[0])
 write(ladder(**snakemake.params.about, workers=snakemake.threads), snakemake.output.ladder)

@@ -2,9 +2,9 @@
 
 from logs import to_log
 
-from fiberweb.dataset import load
-from fiberweb.plotting.narma import draw
-from fiberweb.tables import read
+from fiberweb.scoring.tables import read
+from fiberweb.simulation.dataset import load
+from fiberweb.studies.narma.figure import draw
 
 to_log(snakemake.log[0])
 source = snakemake.input

@@ -2,8 +2,9 @@
 
 from logs import to_log
 
-from fiberweb import narma, tables
-from fiberweb.dataset import save
+from fiberweb.scoring import tables
+from fiberweb.simulation.dataset import save
+from fiberweb.studies.narma import task as narma
 
 to_log(snakemake.log[0])
 source, params = snakemake.input, snakemake.params

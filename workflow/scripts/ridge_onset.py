@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.onset import onsets
-from fiberweb.tables import read, write
+from fiberweb.scoring.tables import read, write
+from fiberweb.studies.ridge.onset import onsets
 
 to_log(snakemake.log[0])
 write(onsets(read(snakemake.input.ridge)), snakemake.output[0])

@@ -2,7 +2,8 @@
 
 from logs import to_log
 
-from fiberweb import robustness, tables
+from fiberweb.scoring import tables
+from fiberweb.studies.robustness import tables as robustness
 
 to_log(snakemake.log[0])
 made = robustness.alphas(snakemake.input.responses, **snakemake.params)

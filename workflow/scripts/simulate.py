@@ -3,7 +3,7 @@
 from logs import to_log
 
 from fiberweb import Scene, explain, simulate
-from fiberweb.dataset import save
+from fiberweb.simulation.dataset import save
 
 to_log(snakemake.log[0])
 print("run", snakemake.wildcards.run)

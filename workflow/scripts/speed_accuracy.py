@@ -3,8 +3,8 @@
 import pandas as pd
 from logs import to_log
 
-from fiberweb.accuracy import exudyn_rows, speed_accuracy
-from fiberweb.tables import write
+from fiberweb.scoring.tables import write
+from fiberweb.validation.accuracy import exudyn_rows, speed_accuracy
 
 to_log(snakemake.log[0])
 table = speed_accuracy(**snakemake.params.about, workers=snakemake.threads)

@@ -2,8 +2,8 @@
 
 from logs import to_log
 
-from fiberweb.limits import drift, stability
-from fiberweb.tables import write
+from fiberweb.scoring.tables import write
+from fiberweb.validation.limits import drift, stability
 
 to_log(snakemake.log[0])
 write(stability(snakemake.params.box, snakemake.params.steps), snakemake.output.limits)

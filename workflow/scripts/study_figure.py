@@ -5,7 +5,7 @@ from pathlib import Path
 
 from logs import to_log
 
-from fiberweb.tables import read
+from fiberweb.scoring.tables import read
 
 to_log(snakemake.log[0])
 tables = {Path(path).stem: read(path) for path in snakemake.input.tables}

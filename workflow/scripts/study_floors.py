@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb import tables
+from fiberweb.scoring import tables
 
 to_log(snakemake.log[0])
 made = tables.floors(snakemake.input.response, **snakemake.params.scoring)

@@ -2,9 +2,9 @@
 
 from logs import to_log
 
-from fiberweb import tables
-from fiberweb.capacity import traces
-from fiberweb.dataset import load, save
+from fiberweb.scoring import tables
+from fiberweb.scoring.capacity import traces
+from fiberweb.simulation.dataset import load, save
 
 to_log(snakemake.log[0])
 source, scoring = snakemake.input, snakemake.params.scoring

@@ -1,0 +1,1 @@
+"""What is simulated: network, scene, drive, mesh; no numerics of time."""

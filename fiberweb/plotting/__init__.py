@@ -1,1 +1,0 @@
-"""Figures: style and drawing only."""

@@ -1,0 +1,306 @@
+"""Nonlinear and memory capacity of a physical reservoir: arrays in, numbers out.
+
+Readouts x(t) estimate a target z[u(t)] linearly, zhat = W x + b, by ridge regression. The capacity
+of a target is c[z] = 1 - sum (zhat - z)^2 / sum (z - mean z)^2 over the test part (paper, section
+'Quantifying physical reservoir capacity', Eq. c). C_nl is the mean of c over the Legendre
+polynomials P_k(u(t)), C_m its mean over the recall targets u(t - tau), tau = 0 .. horizon.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from fiberweb.scoring.regression import Fit, Options, checked, fit_targets, mean_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+REPLICATES = 400  # of the bootstrap
+
+
+@dataclass(frozen=True)
+class Capacity:
+    """Capacities of one run; dimensionless, but for the lags.
+
+    c by the scoring's own rule on the test part and, ``_train``, on the training part; ``_raw``: on
+    the test part, nothing replaced or clipped. Totals are means; c < 0 counts as 0 except in
+    ``_raw``. ``_se``: standard error of the total, see `score_arrays`.
+    """
+
+    orders: np.ndarray  # (n_orders,) of the Legendre polynomials
+    lags: np.ndarray  # (n_lags,) s
+    nonlinear: np.ndarray  # (n_orders,)
+    nonlinear_train: np.ndarray
+    nonlinear_raw: np.ndarray
+    memory: np.ndarray  # (n_lags,)
+    memory_train: np.ndarray
+    memory_raw: np.ndarray
+    c_nl: float
+    c_nl_train: float
+    c_nl_raw: float
+    c_nl_se: float
+    c_m: float
+    c_m_train: float
+    c_m_raw: float
+    c_m_se: float
+
+
+@dataclass(frozen=True)
+class Traces:
+    """Targets and raw estimates on the test part; NaN before a target's own test part begins."""
+
+    time: np.ndarray  # (n,) s from the first frame of u
+    nonlinear: np.ndarray  # (n, n_orders) estimate
+    nonlinear_target: np.ndarray
+    memory: np.ndarray  # (n, n_lags) estimate
+    memory_target: np.ndarray
+
+
+def trivial_readouts(u: np.ndarray, sample_rate: float) -> dict[str, np.ndarray]:
+    """Readouts made of the input (T,) alone: the floors that a reservoir has to beat.
+
+    ``u`` (T, 1); ``derivatives`` (T, 4): u and its first three time derivatives (sample_rate in
+    Hz); ``powers`` (T, 3): u, u^2, u^3. Derivatives are those of the cubic spline through the
+    samples: exact for an input that is itself a spline with its knots on frames.
+    """
+    time = np.arange(len(u)) / sample_rate
+    spline = CubicSpline(time, u)
+    return {
+        "u": np.column_stack([u]),
+        "derivatives": np.column_stack([spline(time, order) for order in range(4)]),
+        "powers": np.column_stack([u, u**2, u**3]),
+    }
+
+
+def score_arrays(
+    u: np.ndarray, readouts: np.ndarray, sample_rate: float, orders: int = 10, **options
+) -> Capacity:
+    """Capacities of one run and their means, C_nl and C_m.
+
+    u: (T,) input, any unit. readouts: (T, p) displacements, m. sample_rate: Hz. orders: highest
+    Legendre order. options: fields of `Options`.
+
+    Standard errors come from resampling blocks of one horizon, counted back from the last frame,
+    the same draw for all targets, under the scoring's own replacement and clipping. They cover the
+    finite test part, not the finite training part; NaN with fewer than two blocks.
+
+    ValueError for an option out of range, shapes that do not match, values that are not finite, a
+    constant u, or a run too short for the horizon.
+    """
+    options = Options(**options)
+    u, readouts = checked(u, readouts, sample_rate, options)
+    if orders < 1:
+        raise ValueError(f"orders = {orders} holds no Legendre polynomial; give 1 or more")
+    horizon = round(options.horizon * sample_rate)
+    orders, lags = np.arange(1, orders + 1), np.arange(horizon + 1)
+    nonlinear, memory = fit_targets(u, readouts, orders, lags, horizon, options)
+    return _assemble(
+        orders,
+        lags / sample_rate,
+        _score_fit(nonlinear, options.scoring, horizon),
+        _score_fit(memory, options.scoring, horizon),
+    )
+
+
+def predict(
+    u: np.ndarray,
+    readouts: np.ndarray,
+    sample_rate: float,
+    orders: Sequence[int] = (4, 5, 6, 7),
+    lags: Sequence[float] = (0.2, 0.4),
+    **options,
+) -> Traces:
+    """Target and raw estimate over the test part, fitted as `score_arrays` fits them.
+
+    orders: Legendre orders; lags: s, none above the horizon; the rest, shapes, units and errors as
+    in `score_arrays`. The defaults are the traces of Fig. 1d.
+    """
+    options = Options(**options)
+    u, readouts = checked(u, readouts, sample_rate, options)
+    for lag in lags:
+        if not 0 <= lag <= options.horizon:
+            raise ValueError(f"lag = {lag:g} s is outside 0 to horizon = {options.horizon:g} s")
+    frames = [round(lag * sample_rate) for lag in lags]
+    fits = fit_targets(u, readouts, orders, frames, round(options.horizon * sample_rate), options)
+    rows = np.hstack([fit.test for fit in fits]).any(axis=1)
+    values = [np.where(f.test, v, np.nan)[rows] for f in fits for v in (f.estimate, f.target)]
+    return Traces((np.flatnonzero(rows) + options.skip) / sample_rate, *values)
+
+
+def own_scoring(response: xr.Dataset) -> str:
+    """The scoring of a response's own setup: 'published', or 'clean' for the described one."""
+    return "published" if response.attrs["setup"] == "published" else "clean"
+
+
+def signals(response: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Input (T,) and readouts (T, 2m) of a response: every readout's x, then every readout's y."""
+    moved = response["displacement"].transpose("time", "readout", "axis")
+    return response["input"].values, np.hstack([moved.sel(axis=a).values for a in ("x", "y")])
+
+
+def traces(
+    response: xr.Dataset,
+    orders: Sequence[int] = (4, 5, 6, 7),
+    lags: Sequence[float] = (0.2, 0.4),
+    scoring: str | None = None,
+    **options,
+) -> xr.Dataset:
+    """`predict` for a response: ``target(trace, time)``, ``prediction(trace, time)`` and ``c``,
+    with traces named like 'P4' and '200 ms'; errors as there."""
+    import xarray as xr
+
+    rate = float(response.attrs["sample_rate"])
+    scoring = scoring or own_scoring(response)
+    found = predict(*signals(response), rate, orders, lags, scoring=scoring, **options)
+    target = np.hstack([found.nonlinear_target, found.memory_target]).T
+    estimate = np.hstack([found.nonlinear, found.memory]).T
+    known = np.isfinite(target)
+    error = np.where(known, estimate - target, 0.0)
+    spread = [np.var(row[mask]) * mask.sum() for row, mask in zip(target, known, strict=True)]
+    names = [f"P{order}" for order in orders] + [f"{1000 * lag:g} ms" for lag in lags]
+    return xr.Dataset(
+        {
+            "target": (("trace", "time"), target),
+            "prediction": (("trace", "time"), estimate),
+            "c": ("trace", 1.0 - (error**2).sum(axis=1) / spread),
+        },
+        {"trace": names, "time": ("time", found.time, _labels("time", "s"))},
+        {key: response.attrs[key] for key in _KEPT if key in response.attrs},
+    )
+
+
+def score(
+    response: xr.Dataset, scoring: str | None = None, orders: int = 10, **options
+) -> xr.Dataset:
+    """The fields of `Capacity` for one response, over coordinates ``order`` and ``lag`` (s).
+
+    response: ``input(time)``; ``displacement(time, readout, axis)`` in m, axis 'x' and 'y'; attrs
+    ``status`` ('ok' or 'unstable'), ``setup`` ('described' or 'published'), ``sample_rate`` in Hz.
+    Signals: every readout's x, then every readout's y. scoring None: 'published' for that setup,
+    else 'clean'. options: fields of `Options`. Errors as in `score_arrays`; but an unstable
+    response is a result: all NaN, and the attr ``status`` says so.
+    """
+    import xarray as xr  # slow to import, and arrays alone do not need it
+
+    scoring = scoring or own_scoring(response)
+    chosen = Options(scoring, **options)
+    rate = float(response.attrs["sample_rate"])
+    if response.attrs["status"] == "unstable":
+        lags = np.arange(round(chosen.horizon * rate) + 1) / rate
+        nan_orders, nan_lags = np.full(orders, np.nan), np.full(len(lags), np.nan)
+        unknown = ((*[c] * 3, math.nan) for c in (nan_orders, nan_lags))
+        capacity = _assemble(np.arange(1, orders + 1), lags, *unknown)
+    else:
+        capacity = score_arrays(*signals(response), rate, orders, scoring=scoring, **options)
+    variables = {
+        stem + suffix: (dims, getattr(capacity, stem + suffix), _labels(f"{what}, {part}"))
+        for stem, (dims, what) in _VARIABLES.items()
+        for suffix, part in _PARTS.items()
+        if hasattr(capacity, stem + suffix)
+    }
+    coords = {
+        "order": ("order", capacity.orders, _labels("Legendre order")),
+        "lag": ("lag", capacity.lags, _labels("recall lag", "s")),
+    }
+    attrs = {key: response.attrs[key] for key in _KEPT if key in response.attrs}
+    attrs["n_signals"] = 2 * response.sizes["readout"]
+    attrs |= asdict(chosen) | {"shuffle": int(chosen.shuffle)}  # NetCDF has no booleans
+    return xr.Dataset(variables, coords, attrs)
+
+
+_KEPT = (
+    "status", "unstable_at", "setup", "scene", "run", "engine", "elements_per_section", "time_step",
+    "sample_rate",
+)  # fmt: skip
+_VARIABLES = {
+    "nonlinear": ("order", "capacity for Legendre polynomials"),
+    "memory": ("lag", "capacity for recall"),
+    "c_nl": ((), "nonlinear capacity"),
+    "c_m": ((), "memory capacity"),
+}
+_PARTS = {
+    "": "test part",
+    "_train": "training part",
+    "_raw": "test part, nothing replaced or clipped",
+    "_se": "test part, standard error",
+}
+
+
+def _labels(long_name: str, units: str = "1") -> dict[str, str]:
+    return {"units": units, "long_name": long_name}
+
+
+def _assemble(orders, lags, nonlinear: tuple, memory: tuple) -> Capacity:
+    """Capacity from (c, c of the training part, raw c, standard error) of either kind."""
+    values = {}
+    for name, total, kind in (("nonlinear", "c_nl", nonlinear), ("memory", "c_m", memory)):
+        c, train, raw, error = kind
+        values |= {name: c, f"{name}_train": train, f"{name}_raw": raw}
+        values |= {total: _clipped_mean(c), f"{total}_train": _clipped_mean(train)}
+        values |= {f"{total}_raw": float(np.mean(raw)), f"{total}_se": error}
+    return Capacity(orders, lags, **values)
+
+
+def _clipped_mean(c: np.ndarray) -> float:
+    return float(np.maximum(c, 0.0).mean())  # np.maximum lets the NaN of an unstable run through
+
+
+def _score_fit(fit: Fit, scoring: str, block: int) -> tuple:
+    """(c, c of the training part, raw c), each (q,), and the standard error of the total."""
+    test = raw = _block_sums(fit.target, fit.estimate, fit.test, block)
+    train = fit.target, fit.estimate
+    lowest = -np.inf
+    if scoring == "published":
+        test = _block_sums(*_replace_overshoot(fit, fit.test), fit.test, block)
+        train = _replace_overshoot(fit, fit.train)
+        lowest = 0.0
+    train = _block_sums(*train, fit.train, block)
+    c, c_train, c_raw = (_capacity(sums.sum(axis=1)) for sums in (test, train, raw))
+    return np.maximum(c, lowest), np.maximum(c_train, lowest), c_raw, _bootstrap_error(test)
+
+
+def _replace_overshoot(fit: Fit, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Target and estimate, both the part's target mean wherever the estimate leaves [-1, 1]."""
+    outside = np.abs(fit.estimate) > 1.0
+    mean = mean_of(fit.target, part)
+    return np.where(outside, mean, fit.target), np.where(outside, mean, fit.estimate)
+
+
+def _block_sums(target, estimate, part, block) -> np.ndarray:
+    """(4, blocks, q): rows, sum z, sum z^2 and sum (zhat - z)^2 of the part, per block of frames.
+
+    Blocks count back from the last frame, where the test parts of all lags end together; the first
+    may be short. z is taken from the part's mean, which keeps its digits.
+    """
+    rows = np.flatnonzero(part.any(axis=1))
+    rows = slice(rows[0], rows[-1] + 1)
+    target, estimate, part = target[rows], estimate[rows], part[rows]
+    z = np.where(part, target - mean_of(target, part), 0.0)
+    error = np.where(part, estimate - target, 0.0)
+    edges = np.arange(len(part), 0, -block)[::-1] - block
+    edges[0] = 0
+    return np.stack([np.add.reduceat(v, edges) for v in (part * 1.0, z, z * z, error * error)])
+
+
+def _capacity(sums: np.ndarray) -> np.ndarray:
+    """c[z] from sums (4, ...) of `_block_sums`; a target that does not vary has none: 0."""
+    n, z, zz, error = sums
+    spread = zz - z * z / np.maximum(n, 1.0)
+    varies = spread > 1e-12 * n  # targets are of order 1
+    return np.where(varies, 1.0 - error / np.where(varies, spread, 1.0), 0.0)
+
+
+def _bootstrap_error(sums: np.ndarray) -> float:
+    """Standard error of the mean of max(c, 0) as the blocks of sums (4, blocks, q) are redrawn."""
+    blocks = sums.shape[1]
+    if blocks < 2:
+        return math.nan
+    draws = np.random.default_rng(0).multinomial(blocks, np.full(blocks, 1 / blocks), REPLICATES)
+    c = _capacity(draws.astype(float) @ sums)
+    return float(np.maximum(c, 0.0).mean(axis=1).std(ddof=1))

@@ -1,0 +1,1 @@
+"""From a scene to its response: plan, simulate, explain, and the NetCDF file."""

@@ -1,0 +1,229 @@
+"""The calibration: misfit over the grid of unreported parameters, and its best points against
+the paper's four numbers.
+
+Drawing only: every number comes from the tables.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+from matplotlib.ticker import LogLocator, StrMethodFormatter
+
+from fiberweb.figures import axes as sweep
+from fiberweb.figures import style
+
+GRID = K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
+SIZE = 8  # N of the crosshatch that has a misfit
+SHOWN = 6  # best points in panel b
+SYMBOLS = {
+    "c_p4": "$c\\,[P_4]$",
+    "c_p7": "$c\\,[P_7]$",
+    "recall_200ms": "$c$ at 200 ms",
+    "recall_400ms": "$c$ at 400 ms",
+}
+MISFITS = style.SEQUENTIAL.reversed()  # small ones light, so that ink marks show on them
+DARK = 0.45  # share of the map above which numbers on it are white
+BEST = {"marker": "*", "ms": 6, "color": style.INK, "mew": 0, "ls": ""}
+OUTLINE = {"edgecolor": style.INK, "facecolor": "none", "linewidth": 1.4}
+THIN = {"linewidth": 1.0}  # in the list
+TOLERANCE = {"color": style.FAINT, "alpha": 0.4, "lw": 0}
+PAPER = {"color": style.GREY, "lw": 0.8}
+
+
+def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
+    """Draw the calibration and write it as PNG and PDF.
+
+    Args:
+        tables: "calibration" and "calibration_check", from `fiberweb.studies.calibration.tables`; and, to show
+            what readouts of the input alone score, "ridge_floors", whose runs have the same input.
+        setup: rows of other setups are left out.
+        path: of the figure.
+
+    Returns:
+        The figure.
+
+    Raises:
+        ValueError: the table has no run of this setup.
+    """
+    runs = sweep.rows_of(tables["calibration"], "calibration", setup)
+    roles = tables["calibration_check"].set_index("role")
+    floors = tables.get("ridge_floors")
+    dense = runs[runs["n"] == SIZE]
+    with style.applied():
+        figure = style.figure(style.DOUBLE, 116.0)
+        top, bottom = figure.subfigures(2, 1, height_ratios=[58, 58])
+        style.letter(top, "a", "Misfit of the 8×8 crosshatch to the paper's four numbers")
+        style.letter(bottom, "b", "The grid's best points")
+        _maps(top, dense, roles)
+        _numbers(bottom, runs, dense, roles, floors)
+        style.save(figure, path)
+    return figure
+
+
+def _maps(part: SubFigure, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
+    """Misfit over stiffness and damping of the crossings, one map a damping of fibres."""
+    gammas = sorted(dense[GAMMA].unique())
+    known = dense["misfit"].dropna()
+    low, high = (known.min(), known.max()) if len(known) else (1.0, 10.0)
+    norm = LogNorm(low, max(high, 2.0 * low))
+    axes = part.subplots(1, len(gammas), sharey=True, squeeze=False)[0]
+    ks, nus = (sorted(dense[name].unique()) for name in (K, NU))
+    for ax, gamma in zip(axes, gammas, strict=True):
+        rows = dense[dense[GAMMA] == gamma]
+        grid = rows.pivot(index=NU, columns=K, values="misfit").reindex(index=nus, columns=ks)
+        ax.imshow(grid, norm=norm, cmap=MISFITS, origin="lower", aspect="auto")
+        _cells(ax, grid.to_numpy(), norm)
+        for role in ("default", "best"):
+            if role in roles.index and roles.loc[role, GAMMA] == gamma:
+                _mark(ax, role, roles.loc[role], ks, nus)
+        _unstable(ax, rows, ks, nus)
+        ax.set(title=rf"$\gamma$ = {gamma:g} /s", xlabel="Crossing stiffness $k$ (N/m)")
+        ax.set_xticks(range(len(ks)), [f"{k:g}" for k in ks])
+        ax.set_yticks(range(len(nus)), [f"{nu:g}" for nu in nus])
+        ax.tick_params(length=0)
+        ax.spines[:].set_visible(False)
+    axes[0].set_ylabel(r"Crossing damping $\nu$ (N s/m)")
+    bar = part.colorbar(
+        ScalarMappable(norm, MISFITS), ax=axes, pad=0.02, aspect=16,
+        ticks=LogLocator(subs=(1, 2, 5)), format=StrMethodFormatter("{x:g}"),
+    )  # fmt: skip
+    bar.minorticks_off()
+    bar.set_label("Misfit")
+    bar.outline.set_linewidth(0.4)
+    handles = {
+        "least misfit": Line2D([], [], **BEST),
+        "defaults of the described setup": Rectangle((0, 0), 1, 1, **OUTLINE),
+    }
+    if (dense["status"] == "unstable").any():
+        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
+    legend = part.legend(
+        handles.values(), handles.keys(), ncols=len(handles), loc="upper right",
+        bbox_to_anchor=(0.995, 1.0), handlelength=1.0, columnspacing=1.2,
+    )  # fmt: skip
+    legend.set_in_layout(False)  # it shares the line of the title, which reserves the room
+
+
+def _cells(ax: Axes, grid: np.ndarray, norm: LogNorm) -> None:
+    for (row, column), value in np.ndenumerate(grid):
+        if np.isfinite(value):
+            colour = "white" if norm(value) > DARK else style.INK
+            ax.text(
+                column, row, _misfit(value), color=colour, ha="center", va="center", fontsize=6.5
+            )
+
+
+def _misfit(value: float) -> str:
+    """Three digits at most, so that maps and list agree."""
+    return f"{value:.{max(0, 2 - int(np.log10(max(value, 1.0))))}f}"
+
+
+def _mark(ax: Axes, role: str, point: pd.Series, ks: list[float], nus: list[float]) -> None:
+    """Outline the defaults' cell; put a star into the corner of the best one."""
+    if point[K] not in ks or point[NU] not in nus:
+        return  # the defaults need not be on the grid
+    x, y = ks.index(point[K]), nus.index(point[NU])
+    if role == "best":
+        ax.plot(x + 0.34, y + 0.3, gid="best", **BEST)
+    else:
+        box = Rectangle((x - 0.48, y - 0.47), 0.96, 0.94, gid="default", zorder=3, **OUTLINE)
+        ax.add_patch(box)
+
+
+def _unstable(ax: Axes, rows: pd.DataFrame, ks: list[float], nus: list[float]) -> None:
+    lost = rows[rows["status"] == "unstable"]
+    places = [(ks.index(k), nus.index(nu)) for k, nu in zip(lost[K], lost[NU], strict=True)]
+    if places:
+        ax.plot(*np.transpose(places), gid="unstable", **style.UNSTABLE)
+
+
+def _numbers(
+    part: SubFigure, runs: pd.DataFrame, dense: pd.DataFrame, roles: pd.DataFrame,
+    floors: pd.DataFrame | None,
+) -> None:  # fmt: skip
+    """The four numbers of the best points over the paper's, and C_nl and C_m of each size."""
+    points = dense.dropna(subset=["misfit"]).sort_values("misfit", kind="stable")
+    default = (points[list(GRID)] == roles.loc["default", list(GRID)]).all(axis=1)
+    points = pd.concat([points[:SHOWN], points[SHOWN:][default[SHOWN:]]])
+    axes = part.subplots(
+        1, len(SYMBOLS) + len(sweep.TOTALS), sharey=True, width_ratios=[1, 1, 1, 1, 1.3, 1.3]
+    )
+    for ax, column in zip(axes, SYMBOLS, strict=False):
+        value, tolerance = roles.loc[["paper", "tolerance"], column]
+        ax.axvspan(value - tolerance, value + tolerance, **TOLERANCE)
+        ax.axvline(value, **PAPER)
+        ax.plot(points[column], -np.arange(len(points)), "o", color=style.INK, ms=3)
+        ax.set_xlabel(SYMBOLS[column])
+        ax.margins(0.12, 0.1)
+        ax.locator_params(axis="x", nbins=3)
+    for ax, name in zip(axes[len(SYMBOLS) :], sweep.TOTALS, strict=True):
+        _total(ax, name, points, runs, floors)
+    _list(axes[0], points, default)
+    for ax in axes:
+        ax.grid(axis="y", color=style.FAINT, lw=0.4)
+        ax.set_axisbelow(True)
+    handles = {
+        "defaults": Rectangle((0, 0), 1, 1, **OUTLINE | THIN),
+        "paper ± tolerance": (Patch(**TOLERANCE), Line2D([], [], **PAPER)),
+    }
+    handles |= {
+        f"{n}×{n}": Line2D([], [], ls="", **look) for n, look in _looks(runs).items()
+    }  # fmt: skip
+    handles["± standard error"] = Line2D([], [], marker="_", ms=6, mew=0.7, ls="", color=style.INK)
+    if floors is not None:
+        handles[sweep.INPUT_ALONE] = Line2D([], [], **sweep.FLOOR_LINE)
+    part.legend(
+        handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
+        handlelength=1.4, columnspacing=1.2,
+    )  # fmt: skip
+
+
+def _list(ax: Axes, points: pd.DataFrame, default: pd.Series) -> None:
+    """Parameters and misfit of each point beside the axes; those of the defaults are outlined, as
+    their cell is."""
+    labels = [
+        f"{row[K]:g}, {row[NU]:g}, {row[GAMMA]:g}   {_misfit(row['misfit'])}"
+        for _, row in points.iterrows()
+    ]
+    ax.set_yticks(-np.arange(len(points)), labels)
+    ax.set_title(r"$k$, $\nu$, $\gamma$   misfit", loc="right", x=-0.06, ha="right", fontsize=6.5)
+    for label, outlined in zip(ax.get_yticklabels(), default[points.index], strict=True):
+        if outlined:
+            label.set_bbox({**OUTLINE, **THIN, "pad": 1.5})
+
+
+def _looks(runs: pd.DataFrame) -> dict[int, dict]:
+    """Of each size: upright marks, that do not hide the short bars across them."""
+    sizes = sorted(runs["n"].unique())
+    look = {"marker": "|", "ms": 5, "mew": 1.0}
+    return {
+        n: look | {"color": shade}
+        for n, shade in zip(sizes, style.colours(len(sizes)), strict=True)
+    }
+
+
+def _total(
+    ax: Axes, name: str, points: pd.DataFrame, runs: pd.DataFrame, floors: pd.DataFrame | None
+) -> None:
+    """A capacity of every size at the points, with standard errors and floors."""
+    places = -np.arange(len(points))
+    for n, look in _looks(runs).items():
+        same = points[list(GRID)].merge(runs[runs["n"] == n], on=list(GRID), how="left")
+        ax.errorbar(same[name], places, xerr=same[f"{name}_se"], ls="", elinewidth=0.7, **look)
+    ax.set(xlabel=sweep.TOTALS[name], xlim=(0, 1), xticks=[0, 0.5, 1])
+    if floors is not None:
+        for value in floors[name]:
+            ax.axvline(value, zorder=0, **sweep.FLOOR_LINE)
+        for row, (value, label) in enumerate(sweep.floor_labels(floors, name, 0.1)):
+            ax.annotate(  # one above the other, because the column is narrow
+                label, (value, 1.0), (0.0, 1.5 + 7.5 * (row % 2)), textcoords="offset points",
+                xycoords=("data", "axes fraction"), ha="center", fontsize=6,
+            )  # fmt: skip

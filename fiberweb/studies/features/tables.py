@@ -1,0 +1,133 @@
+"""Tables of the features study (Fig. 4): what each group of signals scores, and greedy choices."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from fiberweb.model.scene import Scene
+from fiberweb.scoring import capacity, groups, selection, tables
+from fiberweb.simulation import dataset
+
+CHRONOLOGICAL, SHUFFLED = "chronological", "shuffled"
+GROUP_COLUMNS = ("group", "split", "scoring", "n_signals", "effective_rank", "verdict")
+SCENE_COLUMNS = tables.COLUMNS[: tables.COLUMNS.index(tables.SCALARS[0])]
+TOTALS = ("c_nl", "c_m", "c_nl_train", "c_m_train")
+GREEDY_COLUMNS = (
+    *SCENE_COLUMNS, "target", "n_chosen", "kind", "fibre", "section", "axis", *TOTALS, "kept",
+    "share", "needed", "status", "run",
+)  # fmt: skip
+
+
+def group_table(
+    capacity_paths: Sequence[str | Path],
+    response_paths: Sequence[str | Path],
+    choices: Sequence[str],
+    alpha: float,
+    verdict_force: float,
+) -> pd.DataFrame:
+    """One row for each run, group of signals and split.
+
+    Args:
+        capacity_paths, choices: as for `tables.study`.
+        response_paths: of the same runs.
+        alpha: ridge penalty; the paths' own capacities are not used.
+        verdict_force: the force (N) by which claims are judged.
+
+    Returns:
+        The columns of `tables.study` and `GROUP_COLUMNS`. split "chronological" is scored as the
+        run's setup scores; "shuffled" as the authors scored this study: published scoring, C_nl
+        on a random split (which flatters it), C_m on a chronological one. effective_rank: see
+        `selection.effective_rank`. Capacities and rank are NaN for an unstable run.
+    """
+    records = []
+    for scored, response_path, choice in zip(capacity_paths, response_paths, choices, strict=True):
+        run = tables.study([scored], [choice]).iloc[0].to_dict()
+        run["verdict"] = math.isclose(run["force_N"], verdict_force, rel_tol=1e-6)
+        response = dataset.load(response_path)
+        records += [run | row for row in _groups(response, alpha)]
+    made = pd.DataFrame(records)
+    return made[[*(name for name in made.columns if name not in GROUP_COLUMNS), *GROUP_COLUMNS]]
+
+
+def greedy_table(response_path: str | Path, alpha: float, share: float) -> pd.DataFrame:
+    """Signals of one run in the order of forward selection, for C_nl and for C_m.
+
+    Args:
+        response_path: of the run.
+        alpha: ridge penalty.
+        share: of a capacity that is to be kept.
+
+    Returns:
+        Columns `GREEDY_COLUMNS`, one row for each target ("c_nl" or "c_m") and number of signals
+        n_chosen, with the signal added last (kind, fibre, section, axis) and the clean scoring of
+        all so far, in either setup. kept: the target's capacity over that of all signals, test
+        part; needed: the least n_chosen from which on it is at least share. An unstable run has
+        one row for each target, without numbers.
+    """
+    response = dataset.load(response_path)
+    scene = _scene_columns(response) | {"share": share}
+    records = []
+    for target in selection.TARGETS:
+        found = [{}]
+        if response.attrs["status"] == "ok":
+            found = _chosen(response, target, alpha, share)
+        records += [scene | {"target": target} | row for row in found]
+    return pd.DataFrame(records, columns=list(GREEDY_COLUMNS))
+
+
+def _groups(response, alpha: float) -> list[dict]:
+    """The rows of one run."""
+    network = Scene.from_json(response.attrs["scene"]).network
+    stable = response.attrs["status"] == "ok"
+    u, moved = capacity.signals(response)
+    rate = float(response.attrs["sample_rate"])
+    splits = {
+        CHRONOLOGICAL: {"scoring": capacity.own_scoring(response)},
+        SHUFFLED: {"scoring": "published", "shuffle": True},
+    }
+    rows = []
+    for group in groups.names(network):
+        some = moved[:, groups.mask(group, network, response)]
+        rank = selection.effective_rank(some) if stable else math.nan
+        for split, how in splits.items():
+            row = {"group": group, "split": split, "scoring": how["scoring"]}
+            row |= {"n_signals": some.shape[1], "effective_rank": rank}
+            if stable:
+                scored = capacity.score_arrays(u, some, rate, alpha=alpha, **how)
+                row |= {name: getattr(scored, name) for name in tables.SCALARS}
+            else:
+                row |= dict.fromkeys(tables.SCALARS, math.nan)
+            rows.append(row)
+    return rows
+
+
+def _chosen(response, target: str, alpha: float, share: float) -> list[dict]:
+    """The rows of one target."""
+    u, moved = capacity.signals(response)
+    rate = float(response.attrs["sample_rate"])
+    found = selection.forward(u, moved, rate, target, alpha)
+    c = getattr(found, target)
+    points = response.sizes["readout"]
+    made = pd.DataFrame({name: getattr(found, name) for name in TOTALS})
+    for name in ("kind", "fibre", "section"):
+        made[name] = response[name].values[found.signal % points]
+    made["axis"] = [("x", "y")[signal // points] for signal in found.signal]
+    made["n_chosen"] = range(1, len(made) + 1)
+    made["kept"] = c / c[-1]
+    made["needed"] = selection.needed(c, share)
+    return made.to_dict("records")
+
+
+def _scene_columns(response) -> dict:
+    scene = Scene.from_json(response.attrs["scene"])
+    network = scene.network
+    values = (
+        scene.setup, network.topology, network.n, network.spacing, scene.force, scene.tension,
+        scene.buckling_number,
+    )  # fmt: skip
+    known = dict(zip(SCENE_COLUMNS, values, strict=True))
+    return known | {name: response.attrs[name] for name in ("status", "run")}

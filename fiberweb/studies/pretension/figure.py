@@ -1,0 +1,66 @@
+"""Fig. 3: capacities over pretension, at the best force for memory of each spacing.
+
+Drawing only: every number comes from the tables.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fiberweb.figures import axes as sweep
+from fiberweb.figures import style
+
+PAPERS_LEAST = 0.01  # N
+ASIDE = 1.2  # points from one spacing to the next
+
+
+def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
+    """Draw the pretension study of one setup and write it as PNG and PDF.
+
+    Args:
+        tables: "pretension" (`tables.study`) and "ridge_floors" (`tables.floors`). An unstable
+            run is an X.
+        setup: "described" or "published"; rows of the other one are left out.
+        path: of the figure; both suffixes are written beside each other.
+
+    Returns:
+        The figure.
+
+    Raises:
+        ValueError: the table has no run of this setup.
+    """
+    rows = sweep.rows_of(tables["pretension"], "pretension", setup)
+    floors = tables["ridge_floors"]
+    colour = sweep.colours(rows["spacing_m"])
+    with style.applied():
+        figure = style.figure(style.DOUBLE, 76.0)
+        axes = figure.subplots(1, 2)
+        for ax, letter, name in zip(axes, "ab", sweep.TOTALS):
+            _tensions(ax, sorted(rows["tension_N"].unique()))
+            sweep.lines(ax, rows, "tension_N", name, colour, ASIDE)
+            sweep.scale(ax, rows, floors, name)
+            sweep.floors(ax, floors, name)
+            title = f"{sweep.TOTALS[name]} over pretension ({setup} setup)"
+            ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
+        sweep.spacing_bar(figure, axes, colour)
+        handles = sweep.key(rows)
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
+        style.save(figure, path)
+    return figure
+
+
+def _tensions(ax: Axes, tensions: list[float]) -> None:
+    """Ticks at the tensions, on a log scale that a tension of zero, which a study may have, does
+    not break."""
+    if tensions[0] > 0:
+        ax.set(xscale="log", xlim=(tensions[0] / 1.5, tensions[-1] * 1.5))
+    else:
+        ax.set_xscale("symlog", linthresh=PAPERS_LEAST)
+        ax.set_xlim(-0.5 * PAPERS_LEAST, 1.5 * max(tensions[-1], PAPERS_LEAST))
+    ax.set_xticks(tensions, [f"{tension:g}" for tension in tensions])
+    ax.minorticks_off()
+    ax.set_xlabel("Pretension $F_\\mathrm{t}$ (N)")

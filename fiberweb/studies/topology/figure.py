@@ -1,0 +1,243 @@
+"""Fig. 1: capacities of crosshatch and polygonal networks, and example computations.
+
+Drawing only: every number comes from the tables and the traces.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
+
+from fiberweb.figures import axes as sweep
+from fiberweb.figures import panels as parts
+from fiberweb.figures import style
+from fiberweb.model.network import Network, crosshatch, polygon
+from fiberweb.model.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DRAWN = {"crosshatch": (2, 4, 8), "polygon": (6, 8, 12)}  # schematics, where they were run
+TITLES = {"crosshatch": "Crosshatch networks", "polygon": "Polygonal networks"}
+TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resolved in a third
+CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
+DRIVEN = r"$\updownarrow$"
+TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
+# caps wider than the markers, or small bars would not show
+TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick": 0.7}
+
+
+def draw(
+    table: pd.DataFrame,
+    curves: pd.DataFrame,
+    floors: pd.DataFrame | None,
+    traces: xr.Dataset | None,
+    setup: str,
+    path: str | Path,
+) -> Figure:
+    """Draw Fig. 1 for one setup and write it as PNG and PDF.
+
+    Args:
+        table: from `tables.study`; rows of other setups are left out. A run whose status is
+            "unstable" is drawn as an X.
+        curves: from `tables.curves`, of the same runs.
+        floors: from `tables.floors`, or None.
+        traces: ``target`` and ``prediction`` (trace, time), ``c`` (trace), with the trace names
+            ("P4" for P_4(u(t)), "200 ms" for recall) and time in s as coordinates, NaN where a
+            target's test part has not begun; attr ``scene`` names the network. None, or nothing
+            but NaN, leaves panel d out.
+        setup: "described" or "published".
+        path: of the figure; both suffixes are written beside each other.
+
+    Returns:
+        The figure.
+
+    Raises:
+        ValueError: the table has no run of this setup.
+    """
+    table, curves = (frame[frame["setup"] == setup] for frame in (table, curves))
+    if table.empty:
+        raise ValueError(f"the topology table has no run of the {setup} setup to draw")
+    if traces is not None and not _known(traces).any():
+        traces = None  # an unstable run has no prediction to show
+    present = [name for name in TITLES if (table["topology"] == name).any()]
+    heights = [30.0] + [46.0] * len(present) + ([54.0] if traces is not None else [])
+    with style.applied():
+        figure = style.figure(style.DOUBLE, sum(heights))
+        rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
+        letters = iter("abcd")
+        colour = sweep.colours(table["n"])
+        style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
+        _networks(rows[0], table, setup)
+        for row, topology in zip(rows[1:], present, strict=False):
+            style.letter(row, next(letters), f"{TITLES[topology]} ({setup} setup)")
+            runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
+            _capacities(row, runs, points, floors, colour)
+        parts.key_beside_title(rows[1], _marks(table, floors))
+        if traces is not None:
+            title = f"Example computations{_network_name(traces)} ({setup} setup)"
+            style.letter(rows[-1], next(letters), title)
+            _traces(rows[-1], traces)
+        style.save(figure, path)
+    return figure
+
+
+def _networks(part: SubFigure, table: pd.DataFrame, setup: str) -> None:
+    """Schematics of a few networks side by side, each to its own scale."""
+    drawn = []
+    for topology, preferred in DRAWN.items():
+        ran = sorted(table.loc[table["topology"] == topology, "n"].unique())
+        drawn += [(topology, n) for n in ([n for n in preferred if n in ran] or ran[:3])]
+    axes = part.subplots(1, len(drawn) + 1, width_ratios=[1] * len(drawn) + [1.5])
+    for index, (ax, (topology, n)) in enumerate(zip(axes, drawn, strict=False)):
+        network = _network(topology, int(n), setup)
+        _schematic(ax, network, readouts=index == 0)
+        ax.set_title(_label(topology, n))
+    handles = [
+        Line2D([], [], color=style.DRIVE, marker=DRIVEN, ls="", ms=6),
+        Line2D([], [], color=style.INK, marker="o", ls="", ms=2.4),
+        Line2D([], [], color=style.INK, marker="o", mfc="white", mew=0.6, ls="", ms=2.6),
+    ]
+    axes[-1].axis("off")
+    labels = ["driven point", "readout: crossing", "readout: midpoint"]
+    axes[-1].legend(handles, labels, loc="center left")
+
+
+def _network(topology: str, n: int, setup: str) -> Network:
+    if topology == "crosshatch":
+        return crosshatch(n, length=1.0)
+    return polygon(n, diameter=1.0, diagonals="skip-one" if setup == "published" else "all")
+
+
+def _schematic(ax: Axes, network: Network, readouts: bool) -> None:
+    ax.add_collection(LineCollection(network.fibres, colors=style.GREY, linewidths=0.5))
+    near, far = network.fibres[network.driven_fibre]
+    driven = near + (far - near) * network.driven_distance / np.linalg.norm(far - near)
+    if readouts:
+        middle = np.concatenate(
+            [_midpoints(network, fibre) for fibre in range(len(network.fibres))]
+        )
+        ax.plot(*middle.T, "o", ms=2.6, mfc="white", mec=style.INK, mew=0.6, zorder=4)
+        ax.plot(*network.crossings.T, "o", ms=2.4, color=style.INK, zorder=4)
+    ax.plot(*driven, marker=DRIVEN, ms=8, color=style.DRIVE, zorder=3)
+    centre = 0.5 if network.topology == "crosshatch" else 0.0
+    limits = (centre - 0.52, centre + 0.52)
+    ax.set(aspect="equal", xlim=limits, ylim=limits)
+    ax.axis("off")
+
+
+def _midpoints(network: Network, fibre: int) -> np.ndarray:
+    """Midpoints of a fibre's sections, shape (sections, 2)."""
+    ends = network.sections(fibre)
+    near, far = network.fibres[fibre]
+    share = 0.5 * (ends[1:] + ends[:-1]) / ends[-1]
+    return near + share[:, None] * (far - near)
+
+
+def _capacities(
+    part: SubFigure,
+    runs: pd.DataFrame,
+    points: pd.DataFrame,
+    floors: pd.DataFrame | None,
+    colour: dict,
+) -> None:
+    """c over order and over lag for each N, then the totals over N."""
+    by_order, by_lag, nonlinear, memory = part.subplots(1, 4, width_ratios=[1.15, 1.15, 1, 1])
+    sizes = sorted(runs["n"].unique())
+    unstable = set(runs.loc[runs["status"] == "unstable", "n"])
+    for n in sizes:
+        if n in unstable:
+            continue
+        curve = points[points["n"] == n]
+        for ax, target, marker in ((by_order, "order", "o"), (by_lag, "lag", "")):
+            at = curve[curve["target"] == target].sort_values("at")
+            ax.plot(at["at"], at["c"], color=colour[n], marker=marker, ms=2.4)
+    by_order.set(xlabel="Legendre order", ylabel="Capacity $c$", xticks=range(2, 11, 2))
+    by_lag.set(xlabel="Recall lag (s)", xlim=(0, points["at"][points["target"] == "lag"].max()))
+    by_lag.tick_params(labelleft=False)
+    shades = {n: colour[n] for n in sizes}
+    sweep.colour_bar(part, [by_order, by_lag], shades, "$N$", pad=0.01, fraction=0.04, aspect=14)
+    for ax, (name, symbol) in zip((nonlinear, memory), sweep.TOTALS.items(), strict=True):
+        _total(ax, runs, name, colour)
+        ax.set(xlabel="$N$", ylabel=symbol, xticks=sizes)
+    for ax in (by_order, by_lag, nonlinear, memory):
+        ax.set_ylim(*CAPACITY_AXIS)
+    if floors is not None:
+        for ax, name in zip((nonlinear, memory), sweep.TOTALS, strict=True):
+            sweep.floors(ax, floors, name)
+
+
+def _marks(table: pd.DataFrame, floors: pd.DataFrame | None) -> dict[str, Line2D]:
+    """Legend entries of the totals."""
+    handles = {
+        "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
+        "training": Line2D([], [], **TRAINING),
+    }
+    entries = parts.floor_and_unstable((table["status"] == "unstable").any())
+    if floors is None:
+        del entries[sweep.INPUT_ALONE]
+    return handles | entries
+
+
+def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
+    """C_nl or C_m over N: test with its standard error, training as open markers."""
+    runs = runs.sort_values("n")
+    stable = runs[runs["status"] != "unstable"]
+    ax.plot(stable["n"], stable[name], color=style.FAINT, lw=0.8, zorder=1)
+    ax.plot(stable["n"], stable[f"{name}_train"], **TRAINING)
+    for run in stable.itertuples():
+        ax.errorbar(
+            run.n, getattr(run, name), yerr=getattr(run, f"{name}_se"), color=colour[run.n],
+            ecolor=style.INK, zorder=3, **TEST,
+        )  # fmt: skip
+    style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
+    ax.margins(x=0.08)
+
+
+def _traces(part: SubFigure, traces: xr.Dataset) -> None:
+    """Target (dashed) and prediction over a few seconds of the test part, one axes a trace."""
+    known = _known(traces)
+    time = traces["time"].values
+    start = time[known][0]
+    shown = known & (time < start + TRACE_SECONDS)
+    columns = -(-traces.sizes["trace"] // 2)
+    axes = part.subplots(2, columns, sharex=True, sharey=True, squeeze=False)
+    for ax in axes[:, 0]:
+        ax.set_ylabel(r"$z,\ \hat{z}$")
+    for ax, name in zip(axes.T.ravel(), traces["trace"].values, strict=False):
+        one = traces.sel(trace=name)
+        legendre = str(name).startswith("P")
+        ax.plot(time[shown], one["prediction"].values[shown], **parts.PREDICTION)
+        ax.plot(time[shown], one["target"].values[shown], **parts.TARGET)
+        title = f"$P_{{{name[1:]}}}(u(t))$" if legendre else f"$u(t - {name.split()[0]}$ ms$)$"
+        ax.set_title(f"{title}   $c$ = {float(one['c']):.3f}")
+        ax.set(ylim=(-1.15, 1.15), xlim=(start, start + TRACE_SECONDS))
+    for ax in axes[-1]:
+        ax.set_xlabel("Time (s)")
+    lines = {"target $z$": parts.TARGET, "prediction $\\hat{z}$": parts.PREDICTION}
+    handles = {label: Line2D([], [], **line) for label, line in lines.items()}
+    parts.key_beside_title(part, handles)
+
+
+def _known(traces: xr.Dataset) -> np.ndarray:
+    """Instants at which every target and prediction exists, shape (time,)."""
+    both = np.isfinite(traces["target"].values) & np.isfinite(traces["prediction"].values)
+    return both.all(axis=list(traces["target"].dims).index("trace"))
+
+
+def _network_name(traces: xr.Dataset) -> str:
+    if "scene" not in traces.attrs:
+        return ""
+    network = Scene.from_json(traces.attrs["scene"]).network
+    return f", {_label(network.topology, network.n)} {network.topology}"
+
+
+def _label(topology: str, n: int) -> str:
+    return f"{n}×{n}" if topology == "crosshatch" else f"$N$ = {n}"

@@ -1,0 +1,1 @@
+"""How far off our numbers are, and where the steps end."""

@@ -1,0 +1,303 @@
+"""What accuracy costs, and what each simplification changes.
+
+Errors are against the converged solution of the described setup: the fourth-order engine at 16
+and 32 elements per section, extrapolated (Richardson). Trajectory error: rms of the difference
+over all readouts, directions and instants, over the rms of the reference. Time: of this process's
+CPU, in windows of its own.
+"""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from fiberweb.engines import load
+from fiberweb.engines.base import AUTHORS_STEP, Numerics, steps_per_sample
+from fiberweb.engines.stability import largest_step
+from fiberweb.model.mesh import Mesh, build
+from fiberweb.model.network import crosshatch
+from fiberweb.model.scene import Scene
+from fiberweb.scoring import capacity
+from fiberweb.simulation.plan import SAFETY
+from fiberweb.simulation.response import response
+
+RUN = 100.0  # s of simulated time that `seconds_per_run` is for
+ORDER = 4  # of the reference, in the element length
+FINEST = 32  # elements per section of the finest run
+TIMED = 0.4  # s of CPU in a timing window of a planar engine, at least
+REPEATS = 3  # windows; the fastest counts
+COMPARED = 20_000  # steps over which the planar Cosserat engine is held against PyElastica
+AUTHORS_ELEMENT = 10e-3  # m
+STIFF = 1e6  # N/m, the authors' crossing: stiffer than the fibres by far
+
+COLUMNS = (
+    "engine", "setup", "network", "elements_per_section", "time_step", "seconds_per_run",
+    "ns_per_element_step", "trajectory_error", "c_nl_error", "c_m_error",
+    "speedup_vs_pyelastica", "errors_from",
+)  # fmt: skip
+LADDER_COLUMNS = (
+    "rung", "change", "engine", "elements_per_section", "time_step", "seconds_per_run",
+    "compared_s", "trajectory_change", "c_nl", "c_nl_change", "c_m", "c_m_change",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Case:
+    """A network and how it is integrated.
+
+    `elements` None is the authors' mesh; `step` is in s, or None for `share` of the limit;
+    `order` is the kirchhoff engine's; `crossing` overrides its stiffness and damping.
+    """
+
+    engine: str
+    n: int
+    elements: int | None
+    length: float = 0.5
+    buckling: float = 0.8
+    setup: str = "described"
+    share: float = SAFETY
+    step: float | None = None
+    order: int = ORDER
+    crossing: tuple[float, float] | None = None
+
+    def mesh(self, duration: float) -> Mesh:
+        """The mesh of a run of this length (s)."""
+        stiffness, damping = self.crossing or (None, None)
+        scene = Scene(
+            crosshatch(self.n, length=self.length),
+            self.setup,
+            duration=duration,
+            crossing_stiffness=stiffness,
+            crossing_damping=damping,
+        )
+        if self.setup == "described":
+            scene = replace(scene, force=scene.force * self.buckling / scene.buckling_number)
+        return build(scene, self.elements)
+
+    def numerics(self, mesh: Mesh) -> Numerics:
+        """Its numerics, with the step that is really taken."""
+        step = self.step or self.share * largest_step(mesh, self.engine)
+        step = 1.0 / (mesh.scene.sample_rate * steps_per_sample(mesh.scene, step))
+        return Numerics(self.engine, self.elements, step)
+
+    def run(self, duration: float):
+        """Mesh, numerics and recording of a run of this length (s)."""
+        mesh = self.mesh(duration)
+        numerics = self.numerics(mesh)
+        options = {"order": self.order} if self.engine == "kirchhoff" else {}
+        return mesh, numerics, load(self.engine).integrate(mesh, numerics, **options)
+
+    def trajectory(self, duration: float) -> np.ndarray:
+        """Displacements of a run (m)."""
+        return self.run(duration)[2].displacement
+
+    def capacities(self, duration: float) -> np.ndarray:
+        """C_nl and C_m of a run."""
+        scored = capacity.score(response(*self.run(duration)))
+        return np.array([float(scored["c_nl"]), float(scored["c_m"])])
+
+    def cost(self, window: int) -> tuple[float, float, float]:
+        """Step (s), CPU seconds for `RUN` and ns per element and step, from short windows.
+
+        PyElastica is timed over `window` steps after a tenth as many to compile and settle.
+        """
+        mesh = self.mesh(RUN)
+        numerics = self.numerics(mesh)
+        per_step = _elastica_time(mesh, numerics, window)
+        if self.engine != "elastica":
+            per_step = self._planar_time()
+        step = numerics.time_step
+        return step, per_step * RUN / step, 1e9 * per_step / mesh.elements
+
+    def _planar_time(self) -> float:
+        """CPU seconds a step; the window is doubled until it is long enough to be timed."""
+        duration, found = 0.1, []
+        while len(found) < REPEATS:
+            mesh = self.mesh(duration)
+            start = time.process_time()
+            numerics = self.run(duration)[1]
+            taken = time.process_time() - start
+            if taken < TIMED and duration < RUN:
+                duration = min(RUN, 2.0 * duration)
+                continue
+            found.append(taken * numerics.time_step / mesh.scene.duration)
+        return min(found)
+
+
+def _elastica_time(mesh: Mesh, numerics: Numerics, window: int) -> float:
+    """CPU seconds a step of PyElastica; 0 for another engine."""
+    if numerics.engine != "elastica":
+        return 0.0
+    import elastica
+
+    engine = load("elastica")
+    simulator, _, step, _ = engine.assemble(mesh, numerics)
+    stepper = elastica.PositionVerlet()
+    now = engine.run_steps(simulator, stepper, 0.0, step, window // 10)
+    start = time.process_time()
+    engine.run_steps(simulator, stepper, now, step, window)
+    return (time.process_time() - start) / window
+
+
+def difference(found: np.ndarray, reference: np.ndarray) -> float:
+    """Rms of the difference of two trajectories over the rms of the second."""
+    return float(np.sqrt(np.mean((found - reference) ** 2) / np.mean(reference**2)))
+
+
+def extrapolate(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
+    """Richardson's limit of two results, the second with elements half as long."""
+    return fine + (fine - coarse) / (2.0**ORDER - 1.0)
+
+
+def cases(n: int, length: float, buckling: float) -> list[Case]:
+    """The engines, meshes and steps of one network in the described setup."""
+    about = {"n": n, "length": length, "buckling": buckling}
+    listed = [Case("kirchhoff", elements=e, **about) for e in (2, 4, 8, 16)]
+    listed += [Case("kirchhoff", elements=4, share=share, **about) for share in (0.45, 0.225)]
+    listed += [Case("cosserat", elements=4, **about)]
+    listed += [Case("cosserat", elements=8, **about)] if n < 8 else []
+    spatial = [4, 8] if n < 8 else [4]
+    listed += [Case("elastica", elements=e, step=AUTHORS_STEP, **about) for e in spatial]
+    listed += [Case(e, elements=None, step=AUTHORS_STEP, **about) for e in ("cosserat", "elastica")]
+    return listed
+
+
+def planar(case: Case) -> Case:
+    """The case whose errors stand for one: the cosserat engine for PyElastica, and for the
+    authors' mesh the nearest with crossings on nodes, whose places 10 mm elements round."""
+    elements = case.elements or round(case.mesh(1.0).scene.network.spacing / AUTHORS_ELEMENT)
+    return replace(case, engine=_planar(case.engine), elements=elements)
+
+
+def speed_accuracy(
+    networks: list[int], length: float, buckling: float, seconds: float, duration: float,
+    window: int, workers: int = 1,
+) -> pd.DataFrame:  # fmt: skip
+    """Error against cost; columns: `COLUMNS`.
+
+    PyElastica's errors are those of the cosserat engine at the same mesh and step, which follows
+    it to round-off (`errors_from` says so; see also `planar`).
+
+    Args:
+        networks: N of the crosshatches.
+        length: of their fibres (m).
+        buckling: number B of the force.
+        seconds: of the trajectories.
+        duration: of the runs that are scored (s).
+        window: steps in which PyElastica is timed.
+        workers: threads for the long runs; nothing is timed meanwhile.
+    """
+    frames = []
+    for n in networks:
+        listed = cases(n, length, buckling)
+        costs = [case.cost(window) for case in listed]
+        run = [planar(case) for case in listed]
+        about = {"n": n, "length": length, "buckling": buckling}
+        pair = [Case("kirchhoff", elements=e, **about) for e in (FINEST // 2, FINEST)]
+        at = {case: i for i, case in enumerate(dict.fromkeys(run + pair))}
+        distinct = list(at)
+        with ThreadPoolExecutor(workers) as pool:
+            moved = list(pool.map(lambda case: case.trajectory(seconds), distinct))
+            scored = list(pool.map(lambda case: case.capacities(duration), distinct))
+        converged = extrapolate(*(moved[at[case]] for case in pair))
+        best = extrapolate(*(scored[at[case]] for case in pair))
+        yardstick = costs[-1][1]
+        for case, alias, (step, cpu, ns) in zip(listed, run, costs):
+            c_nl, c_m = np.abs(scored[at[alias]] - best)
+            error = difference(moved[at[alias]], converged)
+            frames.append(
+                (case.engine, case.setup, f"{n}x{n}", case.elements or "authors", step, cpu, ns,
+                 error, c_nl, c_m, yardstick / cpu, f"{alias.engine}, {alias.elements} a section")
+            )  # fmt: skip
+        frames += _published(n, length, window)
+    return pd.DataFrame(frames, columns=COLUMNS)
+
+
+def _planar(engine: str) -> str:
+    return "cosserat" if engine == "elastica" else engine
+
+
+def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
+    """Rows of `speed_accuracy` for Exudyn, on the scenes of its own check and neither timed nor
+    scored: the error is its difference from our converged engine.
+
+    Args:
+        checked: from `exudyn_check.table`.
+    """
+    rows = checked[checked["against"] == "kirchhoff"]
+    made = rows[["engine", "network", "elements_per_section", "time_step"]].assign(
+        setup="described", trajectory_error=rows["difference"], errors_from=rows["engine"]
+    )
+    return made.reindex(columns=list(COLUMNS))
+
+
+def _published(n: int, length: float, window: int) -> list[tuple]:
+    """The published setup, which PyElastica defines: its error is zero, and that of the planar
+    engine is how far it departs within `COMPARED` steps."""
+    about = {"elements": None, "length": length, "setup": "published", "step": AUTHORS_STEP}
+    pair = [Case(engine, n, **about) for engine in ("cosserat", "elastica")]
+    compared = COMPARED * AUTHORS_STEP
+    planar, spatial = (case.trajectory(compared) for case in pair)
+    errors = [(difference(planar, spatial), np.nan, np.nan, "elastica"), (0.0, 0.0, 0.0, "itself")]
+    costs = [case.cost(window) for case in pair]
+    return [
+        (case.engine, "published", f"{n}x{n}", "authors", *cost, *error[:3], costs[1][1] / cost[1],
+         error[3])
+        for case, cost, error in zip(pair, costs, errors)
+    ]  # fmt: skip
+
+
+def rungs(length: float, buckling: float) -> list[tuple[str, str, Case]]:
+    """From PyElastica down to the default engine, one change at a time; then the crossings."""
+    planar = Case("cosserat", 4, 8, length, buckling)
+    mesh = planar.mesh(1.0)
+    same = planar.numerics(mesh).time_step
+    lumped = replace(planar, engine="kirchhoff", order=2)
+    default = Case("kirchhoff", 4, 4, length, buckling)
+    stiff = replace(default, crossing=(STIFF, 0.0))
+    return [
+        ("elastica", "PyElastica, in space", replace(planar, engine="elastica", step=same)),
+        ("planar", "motion in the plane", replace(planar, step=same)),
+        ("unshearable", "no shear, no rotary inertia", replace(lumped, step=same)),
+        ("step", "the longer step this allows", lumped),
+        ("fourth order", "fourth-order bending", replace(lumped, order=4)),
+        ("mesh", "4 elements a section, not 8", default),
+        ("pins", "crossings of 1e6 N/m, no damper", stiff),
+        ("merged", "such crossings as one point", replace(default, crossing=(np.inf, 0.0))),
+    ]
+
+
+def ladder(
+    length: float, buckling: float, seconds: float, duration: float, window: int, workers: int = 1
+) -> pd.DataFrame:
+    """What each simplification changes against the rung above it; columns: `LADDER_COLUMNS`.
+
+    PyElastica runs for `window` steps only and is not scored. Arguments: see `speed_accuracy`.
+    """
+    listed = rungs(length, buckling)
+    costs = [case.cost(window) for _, _, case in listed]
+    with ThreadPoolExecutor(workers) as pool:
+        planar = [case for _, _, case in listed[1:]]
+        moved = [None, *pool.map(lambda case: case.trajectory(seconds), planar)]
+        unknown = np.full(2, np.nan)
+        scored = [unknown, *pool.map(lambda case: case.capacities(duration), planar)]
+    brief = window * costs[0][0]
+    rows = []
+    for i, (name, change, case) in enumerate(listed):
+        over, moves = (seconds if i else np.nan), np.nan
+        if i == 1:
+            over = brief
+            moves = difference(case.trajectory(brief), listed[0][2].trajectory(brief))
+        elif i > 1:
+            moves = difference(moved[i], moved[i - 1])
+        changes = np.abs(scored[i] - scored[i - 1]) if i > 1 else unknown
+        (c_nl, c_m), (d_nl, d_m) = scored[i], changes
+        rows.append(
+            (name, change, case.engine, case.elements, costs[i][0], costs[i][1], over, moves,
+             c_nl, d_nl, c_m, d_m)
+        )  # fmt: skip
+    return pd.DataFrame(rows, columns=LADDER_COLUMNS)

@@ -1,0 +1,140 @@
+"""Engines against each other, and kernels against their plain counterparts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fiberweb import Scene, crosshatch, engines, polygon, score, simulate
+from fiberweb.engines import kirchhoff
+from fiberweb.engines.base import Numerics
+from fiberweb.engines.stability import largest_step
+from fiberweb.model.mesh import build
+from tests.engines import oracle
+from tests.engines.fibres import every_node, sampled
+
+
+def moved(mesh, engine, step, **kwargs):
+    """Displacement of the readouts."""
+    recording = engines.load(engine).integrate(mesh, Numerics(engine, None, step), **kwargs)
+    assert recording.unstable_at is None
+    return recording.displacement
+
+
+def rms(a):
+    return np.sqrt(np.mean(a**2))
+
+
+def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwargs):
+    """Every node over 200 steps, to 1e-9 of the largest displacement: round-off, which large
+    rotations and stretches multiply."""
+    steps = 200
+    mesh = build(scene, elements_per_section)
+    step = step or 0.8 * largest_step(mesh, engine)
+    falling = np.array([[-1.0 / (steps * step) ** 3, 0.0, 0.0, 1.0]])  # u from 1 to 0
+    mesh = replace(mesh, drive=falling, readouts=every_node(mesh))
+    expected = getattr(oracle, engine)(mesh, step, steps, **kwargs)
+    largest = np.abs(expected).max()
+    assert largest > 2e-3  # m, a diameter: far beyond the linear
+    found = moved(sampled(mesh, step, steps + 1), engine, step, **kwargs)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * largest)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize(
+    ("network", "fields"),
+    [
+        (crosshatch(2, spacing=0.05), dict(tension=2.0)),
+        (crosshatch(2, spacing=0.05), dict(ends="sliding")),
+        (crosshatch(2, spacing=0.05), dict(crossing_stiffness=np.inf)),
+        (polygon(6, diameter=0.2), dict()),
+        (polygon(6, diameter=0.2), dict(crossing_stiffness=np.inf)),
+    ],
+    ids=["clamped", "sliding", "merged", "polygon", "merged-polygon"],
+)
+def test_kirchhoff_kernel_against_oracle(network, fields, order):
+    """Pairs at the crossings of a crosshatch; three diameters meet at the hexagon's centre."""
+    scene = Scene(network, force=5.0, tension_ramp=0.0, **fields)
+    assert_follows_oracle(scene, 4, "kirchhoff", order=order)
+
+
+@pytest.mark.parametrize(
+    ("network", "elements_per_section", "fields"),
+    [
+        (crosshatch(2, length=0.5), None, dict(setup="published")),
+        (crosshatch(2, spacing=0.05), 4, dict(setup="published")),  # both ends in the stencil
+        (crosshatch(2, spacing=0.05), 4, dict(setup="published", filter_order=3)),
+        (crosshatch(2, spacing=0.05), 4, dict(tension=2.0)),
+        (polygon(6), None, dict(setup="published")),
+    ],
+    ids=["published", "short", "third-order", "described", "polygon"],
+)
+def test_cosserat_kernel_against_oracle(network, elements_per_section, fields):
+    """Filters, dampers, clamps and joints of PyElastica in the plane, at the authors' step."""
+    scene = Scene(network, force=5.0, tension_ramp=5e-4, **fields)
+    assert_follows_oracle(scene, elements_per_section, "cosserat", 5e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("network", "elements_per_section", "setup"),
+    [
+        (crosshatch(4, length=0.5), 10, "described"),
+        (crosshatch(4, length=0.5), None, "published"),
+        (polygon(6, diagonals="skip-one"), None, "published"),
+    ],
+    ids=["described", "published", "hexagon"],
+)
+def test_cosserat_against_pyelastica(network, elements_per_section, setup):
+    """The authors' scenes for 2e4 steps of 5 us. Round-off, which PyElastica's angle from an arc
+    cosine leads: under 1e-8 of the largest displacement."""
+    step, steps = 5e-6, 20_000
+    mesh = build(Scene(network, setup=setup), elements_per_section)
+    mesh = sampled(mesh, step, 21, steps // 20)
+    expected = moved(mesh, "elastica", step)
+    found = moved(mesh, "cosserat", step)
+    assert np.abs(found - expected).max() < 1e-8 * np.abs(expected).max()
+
+
+def test_kirchhoff_against_cosserat():
+    """Equal chains on an equal mesh before buckling (B = 0.32): shear and rotary inertia change
+    4 s of trajectories by less than 2 % rms."""
+    scene = Scene(crosshatch(4, spacing=0.1), duration=4.0)
+    assert scene.buckling_number < 0.5
+    mesh = build(scene, 8)
+    chain = moved(mesh, "kirchhoff", 0.9 * largest_step(mesh, "kirchhoff"), order=2)
+    rods = moved(mesh, "cosserat", 0.9 * largest_step(mesh, "cosserat"))
+    assert rms(chain - rods) < 0.02 * rms(rods)
+
+
+@pytest.mark.slow
+def test_capacities_of_kirchhoff_and_cosserat():
+    """What the engines are for: C_nl and C_m of the whole 100 s within 0.02, the fourth-order
+    Kirchhoff rod against the second-order Cosserat rod at 8 elements a section."""
+    scene = Scene(crosshatch(4, spacing=0.1))
+    ours, theirs = (
+        score(simulate(scene, engine=engine, elements_per_section=8))
+        for engine in ("kirchhoff", "cosserat")
+    )
+    assert float(ours.c_nl) == pytest.approx(float(theirs.c_nl), abs=0.02)
+    assert float(ours.c_m) == pytest.approx(float(theirs.c_m), abs=0.02)
+
+
+def test_merged_crossings_are_the_limit_of_stiff_springs():
+    """Crossings as one point against springs of 1e5 N/m, which yield a thousandth of what a
+    section of 100 mm does (48 EI / s^3 = 3.8 N/m): trajectories within 1 % rms, and ten times
+    softer springs are ten times further off."""
+    off = []
+    for stiffness in (np.inf, 1e5, 1e4):
+        scene = Scene(
+            crosshatch(4, spacing=0.1), duration=2.0, crossing_stiffness=stiffness,
+            crossing_damping=0.0, damping=10.0,
+        )  # fmt: skip
+        mesh = build(scene, 4)
+        result = kirchhoff.integrate(
+            mesh, Numerics("kirchhoff", 4, 0.9 * largest_step(mesh, "kirchhoff"))
+        ).displacement
+        off.append(result)
+    merged, stiff, softer = off
+    assert rms(stiff - merged) < 0.01 * rms(merged)
+    assert rms(softer - merged) / rms(stiff - merged) == pytest.approx(10.0, rel=0.2)

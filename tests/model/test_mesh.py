@@ -1,0 +1,197 @@
+"""Meshes: what is cut where, what acts on which node, and the authors' own mesh."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fiberweb.model.mesh import ELEMENT_FLOOR, build
+from fiberweb.model.network import crosshatch, polygon
+from fiberweb.model.scene import Scene
+
+networks = st.builds(crosshatch, st.integers(2, 6), spacing=st.floats(0.02, 0.3)) | st.builds(
+    polygon, st.sampled_from([6, 8]), diagonals=st.sampled_from(["all", "skip-one"])
+)
+
+
+def rest(mesh):
+    """Where each readout lies."""
+    return np.array([np.array(r.weights) @ mesh.position[list(r.nodes)] for r in mesh.readouts])
+
+
+@pytest.mark.parametrize("elements", [1, 3, 8])
+@pytest.mark.parametrize("n", [2, 4, 5])
+def test_crosshatch_readouts(n, elements):
+    """N^2 crossings, N (N + 1) midpoints either way: 3 N^2 + 2 N points."""
+    mesh = build(Scene(crosshatch(n, spacing=0.1)), elements)
+    kinds = [readout.kind for readout in mesh.readouts]
+    assert len(kinds) == 3 * n * n + 2 * n
+    assert kinds.count("crossing") == n * n
+    assert kinds.count("horizontal_midpoint") == n * (n + 1)
+    assert kinds.count("vertical_midpoint") == n * (n + 1)
+    assert mesh.elements == 2 * n * (n + 1) * elements
+    midpoint = next(i for i, r in enumerate(mesh.readouts)
+                    if r[:3] == ("vertical_midpoint", n + 1, 1))  # fmt: skip
+    np.testing.assert_allclose(rest(mesh)[midpoint], [0.2, 0.15])
+
+
+@pytest.mark.parametrize("setup", ["described", "published"])
+@pytest.mark.parametrize("n", [6, 8])
+def test_skip_one_polygon_readouts(n, setup):
+    """2N + 1 crossings and 6N midpoints."""
+    mesh = build(Scene(polygon(n, diagonals="skip-one"), setup=setup))
+    kinds = [readout.kind for readout in mesh.readouts]
+    assert kinds.count("crossing") == 2 * n + 1
+    assert kinds.count("section_midpoint") == 6 * n
+
+
+@settings(max_examples=25, deadline=None)
+@given(networks, st.integers(1, 9))
+def test_described_meshes_fit_their_network(network, elements):
+    """Crossings and midpoints are read where they are, no joint starts with a gap, elements add
+    up to the fibres, and the masses to the whole."""
+    scene = Scene(network)
+    mesh = build(scene, elements)
+    kinds = np.array([readout.kind for readout in mesh.readouts])
+    np.testing.assert_allclose(
+        sorted(map(tuple, np.round(rest(mesh)[kinds == "crossing"], 8))),
+        sorted(map(tuple, np.round(network.crossings, 8))), atol=2e-8,
+    )  # fmt: skip
+    for readout, place in zip(mesh.readouts, rest(mesh)):
+        near, far = network.fibres[readout.fibre]
+        ends = network.sections(readout.fibre)
+        if readout.kind != "crossing":
+            along = 0.5 * (ends[readout.section] + ends[readout.section + 1])
+            np.testing.assert_allclose(place, near + along / ends[-1] * (far - near), atol=1e-9)
+    a, b = mesh.joints.T
+    np.testing.assert_allclose(mesh.position[a], mesh.position[b], atol=1e-9)
+    lengths = [mesh.edges(f).sum() for f in range(len(network.fibres))]
+    np.testing.assert_allclose(lengths, network.fibre_lengths)
+    whole = scene.density * scene.area * network.fibre_lengths.sum()
+    assert mesh.masses().sum() == pytest.approx(whole)
+    if network.topology == "polygon":  # but for sections shorter than the floor itself
+        floor = ELEMENT_FLOOR * scene.diameter
+        shortest = min(np.diff(network.sections(f)).min() for f in range(len(network.fibres)))
+        assert min(mesh.edges(f).min() for f in range(len(lengths))) >= min(floor, shortest) - 1e-9
+
+
+def test_all_pairs_meet_where_several_fibres_do():
+    """Three diameters of a hexagon: three joints at its centre, one at each other crossing."""
+    mesh = build(Scene(polygon(6)), 4)
+    centred = np.linalg.norm(mesh.position[mesh.joints[:, 0]], axis=1) < 1e-9
+    assert centred.sum() == 3
+    assert len(mesh.joints) == 12 + 3
+
+
+@pytest.mark.parametrize("n", [2, 4, 6, 8, 10, 12])
+def test_authors_mesh_at_500_mm(n):
+    """50 elements of 10 mm; crossings on nodes int(linspace(0, 51, N + 2)), the fibres laid
+    through them, so that no joint starts with a gap; midpoints rounded down likewise."""
+    mesh = build(Scene(crosshatch(n, length=0.5), setup="published"))
+    assert mesh.elements == 2 * n * 50
+    np.testing.assert_allclose(mesh.edges(0), 0.01)
+    grid = np.linspace(0, 51, n + 2)
+    expected = grid[1:-1].astype(int)
+    crossings = [r for r in mesh.readouts if r.kind == "crossing"]
+    for fibre in range(n):
+        at = [r.nodes[0] - mesh.first[fibre] for r in crossings if r.fibre == fibre]
+        np.testing.assert_array_equal(at, expected)
+        np.testing.assert_allclose(
+            mesh.position[mesh.first[fibre] : mesh.first[fibre + 1], 1], 0.01 * expected[fibre]
+        )
+    a, b = mesh.joints.T
+    assert len(a) == n * n
+    np.testing.assert_allclose(mesh.position[a], mesh.position[b], atol=1e-12)
+    middles = (0.5 * (grid[1:] + grid[:-1])).astype(int)
+    places = rest(mesh)[[r.kind == "horizontal_midpoint" and r.fibre == 0 for r in mesh.readouts]]
+    np.testing.assert_allclose(places[:, 0], 0.01 * middles, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("spacing", "elements", "size"),
+    [(0.02, 20, 5e-3), (0.03, 30, 5e-3), (0.04, 50, 4e-3), (0.1, 50, 10e-3), (0.15, 75, 10e-3)],
+)
+def test_authors_elements_at_other_spacings(spacing, elements, size):
+    """10 mm and at least 50 a fibre, but 5 mm at 20 and 30 mm; 4x4."""
+    mesh = build(Scene(crosshatch(4, spacing=spacing), setup="published"))
+    np.testing.assert_allclose(mesh.edges(0), size)
+    assert len(mesh.edges(0)) == elements
+
+
+@pytest.mark.parametrize(("n", "fibre"), [(2, 0), (4, 2), (6, 3)])
+def test_authors_load(n, fibre):
+    """Five nodes about the middle of fibre N // 2 (0 for N = 2), weights skewed, downwards."""
+    scene = Scene(crosshatch(n, length=0.5), setup="published")
+    mesh = build(scene)
+    loaded = np.flatnonzero(mesh.load.any(axis=1))
+    np.testing.assert_array_equal(loaded, mesh.first[fibre] + 25 + np.arange(-2, 3))
+    weights = mesh.load[loaded, 1] / scene.force
+    np.testing.assert_allclose(weights, [-0.1875, -0.125, -0.125, -0.1875, -0.375])
+    assert weights.sum() == pytest.approx(-1.0)
+    assert not mesh.load[:, 0].any()
+
+
+def test_authors_polygon():
+    """Ends joined at the vertices; a hundredth of the stiffness between diagonals, one pair of
+    which stays free; diameters alone are pulled."""
+    network = polygon(6, diagonals="skip-one")
+    mesh = build(Scene(network, setup="published"))
+    fibre_of = np.repeat(np.arange(len(network.fibres)), np.diff(mesh.first))
+    a, b = mesh.joints.T
+    ends = np.isin(a, mesh.first[:-1]) | np.isin(a + 1, mesh.first[1:])
+    diagonals = (fibre_of[a] >= 3) & (fibre_of[b] >= 3) & ~ends
+    np.testing.assert_allclose(mesh.joint_stiffness[diagonals], 10.0)
+    np.testing.assert_allclose(mesh.joint_stiffness[~diagonals], 1e3)
+    assert diagonals.sum() == 6 - 1  # neighbouring short diagonals cross in six points
+    assert ends.sum() == 6 * 3  # three fibres end at each vertex
+    pulled = np.unique(fibre_of[mesh.pull.any(axis=1)])
+    np.testing.assert_array_equal(pulled, [0, 1, 2])
+
+
+@pytest.mark.parametrize(
+    ("ends", "far", "clamped"),
+    [("clamped", [False, False], True), ("sliding", [False, True], False),
+     ("pinned", [False, False], False)],
+)  # fmt: skip
+def test_ends_of_fibres(ends, far, clamped):
+    """Near ends held; far ends free, or free along the fibre only, and pulled along it."""
+    mesh = build(Scene(crosshatch(2, spacing=0.1), ends=ends, tension=0.3), 4)
+    for fibre in range(4):
+        start, end = mesh.first[fibre], mesh.first[fibre + 1] - 1
+        along = np.array([1.0, 0.0]) if fibre < 2 else np.array([0.0, 1.0])
+        assert mesh.held[start].all()
+        np.testing.assert_array_equal(mesh.held[end], far if fibre < 2 else far[::-1])
+        np.testing.assert_allclose(mesh.pull[end], 0.3 * along, atol=1e-15)
+        assert mesh.clamped[fibre] == clamped
+    assert mesh.held.sum() == 4 * (2 + any(far))
+    assert np.count_nonzero(mesh.pull.any(axis=1)) == 4
+
+
+@pytest.mark.parametrize("elements", [2, 3, 4])
+def test_described_load_is_one_point(elements):
+    """Lateral, at the middle of the central horizontal fibre, shared by four nodes if none is
+    there."""
+    scene = Scene(crosshatch(4, spacing=0.1))
+    mesh = build(scene, elements)
+    np.testing.assert_allclose(mesh.load.sum(axis=0), [0.0, scene.force])
+    moment = (mesh.load[:, 1:] * mesh.position).sum(axis=0) / scene.force
+    np.testing.assert_allclose(moment, [0.25, 0.3])
+    assert np.count_nonzero(mesh.load) == (1 if elements % 2 == 0 else 4)
+
+
+def test_a_shorter_run_is_driven_by_the_same_series():
+    short, long = (build(Scene(crosshatch(2, spacing=0.1), duration=d), 2) for d in (3.0, 100.0))
+    np.testing.assert_array_equal(short.drive, long.drive)
+    assert short.drive.shape == (500, 4)
+    assert short.drive[0, 3] == 0.0
+
+
+@pytest.mark.parametrize("elements", [0, -3])
+def test_too_few_elements(elements):
+    with pytest.raises(ValueError, match=rf"^elements_per_section = {elements} must be a whole"):
+        build(Scene(crosshatch(2, spacing=0.1)), elements)
+
+
+def test_sliding_ends_need_fibres_along_the_axes():
+    with pytest.raises(ValueError, match=r"^ends = 'sliding' needs fibres along x or y"):
+        build(Scene(polygon(6), ends="sliding"), 4)

@@ -1,0 +1,89 @@
+"""Effective rank on matrices of known rank; forward selection against fits from scratch."""
+
+import numpy as np
+import pytest
+
+from fiberweb.scoring import capacity, selection
+
+RATE = 20.0
+
+
+@pytest.fixture(scope="module")
+def run():
+    """An input, and readouts of which some help, one repeats another and one stands still."""
+    random = np.random.default_rng(0)
+    u = np.convolve(random.uniform(-1, 1, 1019), np.hanning(20), mode="valid")
+    useful = [u, u**2, u**3, np.roll(u, 6), np.roll(u, 14)]
+    readouts = [*useful, useful[0], *random.normal(size=(3, len(u))), np.full(len(u), 0.1)]
+    return u, np.column_stack(readouts) + 1e-3 * random.normal(size=(len(u), 1)) * (
+        np.arange(10) < 9
+    )
+
+
+def test_effective_rank_counts_equal_directions_and_not_copies():
+    waves = np.linalg.qr(np.random.default_rng(1).normal(size=(200, 4)))[0]
+    waves -= waves.mean(axis=0)
+    waves = np.linalg.qr(waves)[0]
+    assert selection.effective_rank(waves) == pytest.approx(4)
+    assert selection.effective_rank(waves * [1, 1e3, 1e-3, 7] + 5) == pytest.approx(4)
+    assert selection.effective_rank(np.repeat(waves[:, :1], 3, axis=1)) == pytest.approx(1)
+    still = np.column_stack([waves[:, :2], np.zeros(200)])
+    assert selection.effective_rank(still) == pytest.approx(2)
+
+
+def test_effective_rank_of_two_correlated_signals_is_the_formula():
+    a, b = np.linalg.qr(np.column_stack([np.ones(100), np.eye(100)[:, :2]]))[0][:, 1:].T
+    share = np.sqrt([1.6, 0.4]) / np.sqrt([1.6, 0.4]).sum()  # correlation 0.6
+    expected = np.exp(-(share * np.log(share)).sum())
+    found = selection.effective_rank(np.column_stack([a, 0.6 * a + 0.8 * b]))
+    assert found == pytest.approx(expected)
+
+
+def test_effective_rank_of_nothing_is_refused():
+    with pytest.raises(ValueError, match="no signal moves"):
+        selection.effective_rank(np.ones((10, 2)))
+
+
+@pytest.mark.parametrize("target", ["c_nl", "c_m"])
+def test_totals_are_those_of_the_clean_scoring(run, target):
+    u, readouts = run
+    found = selection.forward(u, readouts, RATE, target, alpha=0.1)
+    assert sorted(found.signal) == list(range(9))  # the last one stands still
+    for k in (1, 4, 9):
+        some = readouts[:, found.signal[:k]]
+        expected = capacity.score_arrays(u, some, RATE, alpha=0.1)
+        for name in ("c_nl", "c_m", "c_nl_train", "c_m_train"):
+            assert getattr(found, name)[k - 1] == pytest.approx(getattr(expected, name), abs=1e-9)
+
+
+def test_each_step_takes_what_helps_training_most(run):
+    u, readouts = run
+    found = selection.forward(u, readouts, RATE, "c_nl", alpha=1e-6)
+    taken = list(found.signal[:2])
+    for k, signal in enumerate(taken):
+        scores = {
+            other: capacity.score_arrays(u, readouts[:, [*taken[:k], other]], RATE, alpha=1e-6)
+            for other in set(range(9)) - set(taken[:k])
+        }
+        assert max(scores, key=lambda other: scores[other].c_nl_train) == signal
+
+
+def test_the_choice_does_not_look_at_the_test_part(run):
+    u, readouts = run
+    other = readouts.copy()
+    other[770:] = np.random.default_rng(2).normal(size=other[770:].shape)
+    for target in selection.TARGETS:
+        first, second = (selection.forward(u, x, RATE, target) for x in (readouts, other))
+        np.testing.assert_array_equal(first.signal, second.signal)
+        assert not np.allclose(first.c_m, second.c_m)
+
+
+def test_needed_asks_that_the_share_is_never_lost_again():
+    assert selection.needed(np.array([0.2, 0.96, 0.9, 0.97, 1.0]), 0.95) == 4
+    assert selection.needed(np.array([0.96, 0.98, 1.0]), 0.95) == 1
+    assert selection.needed(np.array([0.2, 0.3, 1.0]), 0.95) == 3
+
+
+def test_another_target_is_refused(run):
+    with pytest.raises(ValueError, match="target = 'both' is unknown; use 'c_nl' or 'c_m'"):
+        selection.forward(*run, RATE, "both")

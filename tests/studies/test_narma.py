@@ -1,0 +1,220 @@
+"""The NARMA recursions by hand, the split, the fit against its definition, and the figure."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from matplotlib.collections import PolyCollection
+from matplotlib.text import Text
+
+from fiberweb import Scene, crosshatch
+from fiberweb.scoring import capacity, tables
+from fiberweb.simulation import dataset
+from fiberweb.studies.narma import figure
+from fiberweb.studies.narma import task as narma
+from tests.figures.legible import assert_legible
+
+RATE = 50.0
+
+
+def recording(n, duration=8.0, status="ok", name="run"):
+    """A response of a network made of delayed inputs, their squares, and noise: no simulation."""
+    scene = Scene(crosshatch(n, length=0.5), duration=duration, sample_rate=RATE)
+    time = scene.times
+    u = np.sin(1.7 * time) + 0.5 * np.sin(4.1 * time + 1) + 0.3 * np.sin(9.3 * time)
+    delayed = np.stack([np.roll(u, 5 * k) for k in range(4 * n)], 1)
+    noise = np.random.default_rng(n).standard_normal(delayed.shape)
+    moved = 1e-4 * np.stack([delayed, delayed**2 + 0.01 * noise], -1)
+    if status == "unstable":
+        moved[len(moved) // 2 :] = np.nan
+    return xr.Dataset(
+        {
+            "input": ("time", u),
+            "displacement": (("time", "readout", "axis"), moved.astype(np.float32)),
+        },
+        {"time": time, "axis": ["x", "y"]},
+        {
+            "status": status, "setup": "described", "sample_rate": RATE, "run": name,
+            "scene": scene.to_json(), "engine": "kirchhoff", "elements_per_section": 4,
+            "time_step": 1e-5,
+        },
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """(found, table) of a stable and an unstable run."""
+    folder = tmp_path_factory.mktemp("narma")
+    responses, capacities = [], []
+    for n, status in ((2, "ok"), (3, "unstable")):
+        response = recording(n, status=status, name=f"crosshatch-n{n:02d}")
+        responses.append(folder / f"{n}-response.nc")
+        capacities.append(folder / f"{n}-capacity.nc")
+        dataset.save(response, responses[-1])
+        dataset.save(capacity.score(response), capacities[-1])
+    found = narma.of_runs(responses, narma.ORDERS, 10.0, 1.0)
+    return found, narma.table(found, capacities, ["eq3", "eq3"])
+
+
+# --- the recursions -----------------------------------------------------------------------------
+
+
+def test_narma_2_by_hand():
+    u = np.array([0.1, 0.2, 0.0, 0.1])
+    # 0.1 + 0.6e-3; 0.4 * 0.1006 + 0.1 + 4.8e-3; ...
+    y1 = 0.1006
+    y2 = 0.04024 + 0.0 + 0.0048 + 0.1
+    y3 = 0.4 * 0.14504 + 0.4 * 0.14504 * 0.1006 + 0.0 + 0.1
+    y4 = 0.4 * y3 + 0.4 * y3 * 0.14504 + 0.0006 + 0.1
+    np.testing.assert_allclose(narma.series(u, 2), [0.0, y1, y2, y3, y4], rtol=1e-12)
+    assert y3 == pytest.approx(0.163852, abs=1e-6) and y4 == pytest.approx(0.175647, abs=1e-6)
+
+
+def test_narma_5_by_hand():
+    u = np.array([0.2, 0.1, 0.0, 0.1, 0.2, 0.1, 0.05])
+    expected = [0.0, 0.1, 0.1305]  # 0.03 + 0.05 * 0.1 * 0.1 + 0.1
+    expected.append(0.3 * 0.1305 + 0.05 * 0.1305 * 0.2305 + 0.1)
+    expected.append(0.3 * expected[3] + 0.05 * expected[3] * sum(expected) + 0.1)
+    y4 = expected[4]  # from here on u four samples ago is inside the series: 0.2 * 0.2, ...
+    expected.append(0.3 * y4 + 0.05 * y4 * sum(expected) + 1.5 * 0.2 * 0.2 + 0.1)
+    y5 = expected[5]
+    expected.append(0.3 * y5 + 0.05 * y5 * sum(expected[1:]) + 1.5 * 0.1 * 0.1 + 0.1)
+    y6 = expected[6]
+    expected.append(0.3 * y6 + 0.05 * y6 * sum(expected[2:]) + 1.5 * 0.0 * 0.05 + 0.1)
+    y = narma.series(u, 5)
+    np.testing.assert_allclose(y, expected, rtol=1e-12)
+    assert y[5] == pytest.approx(0.2071776, abs=1e-7)
+
+
+@pytest.mark.parametrize("order", narma.ORDERS)
+def test_a_constant_input_ends_at_the_fixed_point(order):
+    y = narma.series(np.full(400, 0.1), order)[-1]
+    if order == 2:
+        assert y == pytest.approx(0.4 * y + 0.4 * y**2 + 0.6e-3 + 0.1, abs=1e-12)
+    else:
+        assert y == pytest.approx(0.3 * y + 0.05 * order * y**2 + 0.015 + 0.1, abs=1e-12)
+
+
+def test_narma_10_reads_the_input_nine_samples_ago():
+    u = np.full(60, 0.1)
+    pulse = u.copy()
+    pulse[30] = 0.2
+    change = narma.series(pulse, 10) - narma.series(u, 10)
+    assert np.all(change[:31] == 0.0)
+    assert change[31] == pytest.approx(1.5 * 0.1 * 0.1)
+    steps = np.diff(change[31:45])
+    assert np.argmax(steps) == 8  # from y(39) to y(40), where u(30) u(39) enters
+
+
+@pytest.mark.parametrize(
+    ("u", "order", "words"),
+    [
+        ([0.1], 3, "order = 3 is no NARMA task of the paper; use 2, 5 or 10"),
+        ([0.1, 0.3], 2, "u runs from 0.1 to 0.3; scale it to 0 to 0.2"),
+        ([0.1, np.nan], 2, "u runs from nan"),
+    ],
+)
+def test_bad_series_are_named(u, order, words):
+    with pytest.raises(ValueError, match=words):
+        narma.series(np.array(u), order)
+
+
+# --- the split and the fit ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("samples", "first", "tested"), [(1000, 200, 200), (60, 12, 12), (1003, 200, 201)]
+)
+def test_split_drops_the_first_and_tests_on_the_last_quarter(samples, first, tested):
+    train, test = narma.split(samples)
+    assert (train[0], len(test), test[-1]) == (first, tested, samples - 1)
+    np.testing.assert_array_equal(np.r_[train, test], np.arange(first, samples))
+
+
+def test_too_short_a_recording_is_named():
+    with pytest.raises(ValueError, match=r"has 19 samples .* record at least 20"):
+        narma.split(19)
+
+
+def test_rate_must_divide_the_recordings():
+    with pytest.raises(ValueError, match=r"narma.rate = 7 Hz does not divide .* 50 Hz"):
+        narma.estimates(recording(2), (2,), 7.0, 1.0)
+
+
+def test_estimates_are_ridge_on_standardised_readouts():
+    """The normal equations, written out; next is the same series one sample on."""
+    response = recording(3)
+    found = narma.estimates(response, (2, 10), 10.0, 1.0)
+    u, x = capacity.signals(response)
+    u, x = u[::5], x[::5].astype(float)
+    train, test = np.arange(16, 64), np.arange(64, 80)  # 80 samples, a fifth of them dropped
+    y = narma.series(0.2 * (u - u.min()) / (u.max() - u.min()), 10)
+    x = (x - x[train].mean(axis=0)) / x[train].std(axis=0)
+    for timing, z in (("same", y[:-1]), ("next", y[1:])):
+        mean = z[train].mean()
+        gram = x[train].T @ x[train] + np.eye(x.shape[1])
+        weights = np.linalg.solve(gram, x[train].T @ (z[train] - mean))
+        one = found.sel(run="run", timing=timing, order=10)
+        np.testing.assert_allclose(one["target"], z[test], rtol=1e-12)
+        estimate = one["estimate"].sel(readout="network")
+        np.testing.assert_allclose(estimate, x[test] @ weights + mean, rtol=1e-8)
+    np.testing.assert_allclose(found["time"], test / 10.0)
+
+
+def test_table_holds_the_measures_of_the_errors(study):
+    found, table = study
+    assert len(table) == 2 * 3 * 5 * 2
+    assert list(table.columns[: len(tables.COLUMNS)]) == list(tables.COLUMNS)
+    row = table[(table["n"] == 2) & (table["order"] == 5) & (table["timing"] == "same")]
+    row = row.set_index("readout").loc["powers"]
+    at = {"run": row["run"], "order": 5, "timing": "same"}
+    z = found["target"].sel(at).values
+    error = found["estimate"].sel(at | {"readout": "powers"}).values - z
+    assert row["rmse"] == pytest.approx(np.sqrt(np.mean(error**2)))
+    assert row["nrmse"] == pytest.approx(np.sqrt(np.mean(error**2)) / np.std(z))
+    assert row["bias"] == pytest.approx(np.mean(error))
+    low, high = np.percentile(error, [10, 90])
+    assert row["interdecile_range"] == pytest.approx(high - low)
+    signals = table[table["n"] == 2].groupby("readout")["n_signals"].first().to_dict()
+    assert signals == {"network": 16, "echo_state": 16, "u": 1, "derivatives": 4, "powers": 3}
+    assert set(table["alpha"]) == {1.0} and set(table["force_choice"]) == {"eq3"}
+
+
+def test_an_unstable_run_has_no_errors_but_its_input_has(study):
+    table = study[1].query("status == 'unstable'")
+    measured = table.groupby("readout")[["rmse", "nrmse", "interdecile_range", "bias"]].count()
+    assert (measured.loc["network"] == 0).all()
+    assert (measured.drop("network") == 6).all(axis=None)
+
+
+# --- the figure ---------------------------------------------------------------------------------
+
+
+def test_figure_shows_every_readout_and_an_x_for_the_unstable(study, tmp_path):
+    found, table = study
+    made = figure.draw(table, found, "described", tmp_path / "narma.png")
+    assert (tmp_path / "narma.png").stat().st_size > 10_000 and (tmp_path / "narma.pdf").exists()
+    text = " ".join(t.get_text() for t in made.findobj(Text))
+    for words in ("NARMA-10", "2×2", "3×3", "ESN\n16", "unstable run", "2×2 network", "Bias"):
+        assert words in text
+    # three panels each of violins, RMSE, interdecile range and bias
+    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 12
+    violins = [body for body in made.findobj(PolyCollection) if len(body.get_paths())]
+    assert len(violins) == 3 * 6  # a network, two of echo states, and three of the input alone
+    assert_legible(made)
+    assert made.get_size_inches()[0] == pytest.approx(180 / 25.4)
+
+
+def test_figure_of_one_unstable_run_is_drawn(study, tmp_path):
+    found, table = study
+    alone = table[(table["status"] == "unstable") & (table["order"] == 2)]
+    made = figure.draw(alone, found, "described", tmp_path / "narma.png")
+    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 5
+    with pytest.raises(ValueError, match="no run of the published setup"):
+        figure.draw(alone, found, "published", tmp_path / "none.png")
+
+
+def test_table_reads_back(study, tmp_path):
+    tables.write(study[1], tmp_path / "narma.csv")
+    back = tables.read(tmp_path / "narma.csv")
+    pd.testing.assert_series_equal(back["rmse"], study[1]["rmse"], rtol=1e-9)
