@@ -3,9 +3,10 @@
 #
 #   snakemake --cores 2 figures      the paper's text (setup `described`)
 #   snakemake --cores 2 published    the authors' code (setup `published`)
-#   snakemake published_all --profile profiles/slurm      every run of the authors, on a cluster
+#   snakemake published --config published_all=true --profile profiles/slurm      every run of the
+#                                    authors, on a cluster
 #   snakemake --cores 2 topology     one study alone
-#   snakemake --cores 2 claims       only the table of the paper's claims
+#   snakemake --cores 2 claims       the paper's claims in both setups, side by side
 #   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
 import subprocess
@@ -25,14 +26,8 @@ report: "workflow/report/workflow.rst"
 include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
-include: "workflow/rules/topology.smk"
-include: "workflow/rules/studies.smk"
-include: "workflow/rules/noise.smk"
-include: "workflow/rules/robustness.smk"
-include: "workflow/rules/chaos.smk"
-include: "workflow/rules/narma.smk"
+include: "workflow/rules/study.smk"
 include: "workflow/rules/buckling.smk"
-include: "workflow/rules/features.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/accuracy.smk"
 
@@ -40,33 +35,31 @@ include: "workflow/rules/accuracy.smk"
 rule figures:
     default_target: True
     input:
-        [figure(study, "described") for study in DRAWN],
-        ANIMATIONS,
-        lambda wildcards: merged(),
-        rules.claims.output,
+        products("described"),
 
 
 rule published:
     input:
-        [figure(study, "published") for study in DRAWN if "published" in STUDY_SETUPS[study]],
-        lambda wildcards: merged(),
-        rules.claims.output,
+        products("published"),
 
 
-rule published_all:
-    input:
-        rules.published.input,
+for study in studies.STUDIES:
+    if studies.setups(study):
+
+        rule:
+            name:
+                study
+            input:
+                drawn(study, studies.setups(study)[0]),
 
 
 onstart:
+    # The limit on new jobs a second starts a timer at every pass of the scheduler, each of which
+    # ends in another pass: a third of a core after some hundred jobs.
+    workflow.scheduler.job_rate_limiter = None
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     subprocess.run([sys.executable, "workflow/scripts/provenance.py", RESULTS], check=True)
 
 
 onsuccess:
-    print(f"Done: figures in {RESULTS}/figures, tables in {RESULTS}/tables;")
-    print(f"{RESULTS}/tables/claims.csv holds each claim of the paper against them.")
-    # whether the described setup's defaults are still the grid's best
-    if "figures" in targets():
-        grid = f"{RESULTS}/tables/described/calibration.csv"
-        subprocess.run([sys.executable, "-m", "fiberweb.studies.calibration.tables", grid], check=False)
+    print(f"Done: figures in {RESULTS}/figures, tables and claims in {RESULTS}/tables/<setup>.")

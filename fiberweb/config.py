@@ -7,16 +7,19 @@ Defaults are the paper's. What is generated from the models is in `fiberweb.tool
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Self
 
-from pydantic import ValidationError, model_validator
+from pydantic import ValidationError, create_model, model_validator
 
+from fiberweb import studies
 from fiberweb.errors import sentence
 from fiberweb.sections import (
-    AccuracySection,
     NumericsSection,
     SceneSection,
     ScoringSection,
@@ -24,85 +27,67 @@ from fiberweb.sections import (
     SetupsSection,
     key,
 )
-from fiberweb.studies.sections import (
-    BucklingSection,
-    CalibrationSection,
-    ChaosSection,
-    FeaturesSection,
-    MemoryOriginSection,
-    NarmaSection,
-    NoiseSection,
-    PretensionSection,
-    RidgeSection,
-    RobustnessSection,
-    SizeSection,
-    TopologySection,
-)
-
-HORIZON = 1.0  # longest recall lag (s)
-AUTHORS_SKIP = 300  # first frames that the authors drop from polygons
+from fiberweb.studies.base import CHOICES, ForceMap, Lab
 
 
-class Config(Section):
-    """The whole config."""
+class General(Section):
+    """What is not of one study alone."""
 
     results: str = key("results", "folder that everything is written to", min_length=1)
     published_tables: str | None = key(
         None, "folder of the authors' own tables; without it the G claims are not computed"
     )
+    published_all: bool = key(
+        False, "every run of the authors in the published setup, not only what two cores afford"
+    )
     scene: SceneSection = SceneSection()
     setups: SetupsSection = SetupsSection()
     numerics: NumericsSection = NumericsSection()
     scoring: ScoringSection = ScoringSection()
-    topology: TopologySection = TopologySection()
-    ridge: RidgeSection = RidgeSection()
-    size: SizeSection = SizeSection()
-    pretension: PretensionSection = PretensionSection()
-    features: FeaturesSection = FeaturesSection()
-    memory_origin: MemoryOriginSection = MemoryOriginSection()
-    calibration: CalibrationSection = CalibrationSection()
-    noise: NoiseSection = NoiseSection()
-    chaos: ChaosSection = ChaosSection()
-    robustness: RobustnessSection = RobustnessSection()
-    narma: NarmaSection = NarmaSection()
-    buckling: BucklingSection = BucklingSection()
-    accuracy: AccuracySection = AccuracySection()
 
     @model_validator(mode="after")
-    def _long_enough_to_score(self) -> Self:
-        least, why = 2 * HORIZON, "twice the horizon"
-        if self.topology.polygon:
-            least += AUTHORS_SKIP / self.scene.sample_rate
-            why += f" and the {AUTHORS_SKIP} frames that published polygons drop"
-        if self.scene.duration < least:
-            raise ValueError(
-                f"scene.duration = {self.scene.duration:g} s is too short for the recall horizon "
-                f"of {HORIZON:g} s: record at least {least:g} s, {why}"
-            )
-        if self.size.published_duration < 2 * HORIZON:
-            raise ValueError(
-                f"size.published_duration = {self.size.published_duration:g} s is too short for "
-                f"the recall horizon of {HORIZON:g} s: record at least {2 * HORIZON:g} s"
-            )
+    def _studies_agree(self) -> Self:
+        lab(self, "described").check_duration("scene.duration", self.scene.duration)
+        for name in studies.STUDIES:
+            if check := getattr(studies.load(name), "check", None):
+                check(getattr(self, name), lab(self, "described"))
         return self
 
-    @model_validator(mode="after")
-    def _follows_the_ridge(self) -> Self:
-        spacings = self.ridge.spacing
-        for name in ("published_c_nl_force", "published_c_m_force"):
-            forces = getattr(self.size, name)
-            if len(forces) != len(spacings):
-                raise ValueError(
-                    f"size.{name} lists {len(forces)} forces, but ridge.spacing {len(spacings)} "
-                    "spacings: list one force for each"
-                )
-        for spacing in self.pretension.spacing:
-            if spacing not in spacings:
-                raise ValueError(
-                    f"pretension.spacing holds {spacing:g} m, but ridge.spacing does not: the "
-                    "forces of this study come from the ridge, so use spacings of both"
-                )
-        return self
+
+_SECTIONS = {name: studies.load(name).SECTION for name in studies.STUDIES}
+Config = create_model(
+    "Config",
+    __base__=General,
+    __doc__="The whole config: what is general, and a section of each study.",
+    **{name: (section, section()) for name, section in _SECTIONS.items()},
+)
+
+
+def lab(config: Config, setup: str, best: Mapping | None = None) -> Lab:
+    """What a study is given beside its own section.
+
+    Args:
+        config: the whole config.
+        setup: "described" or "published".
+        best: (choice, spacing in m) to force (N), as the ridge's table of best forces holds them;
+            None while it is not made.
+    """
+    overrides = getattr(config.setups, setup).model_dump()
+    defaults = config.scene.model_dump() | overrides
+    ridge = config.ridge
+    empty = Lab(setup, defaults, ForceMap(ridge.n, tuple(ridge.spacing), {}), True)
+    forces = {}
+    for choice, spacing in product(CHOICES, ridge.spacing):
+        if best is None:
+            critical = empty.critical_force(spacing)
+            forces[choice, spacing] = [force for force in ridge.force if force < critical]
+            continue
+        for (chosen, at), force in best.items():
+            if chosen == choice and math.isclose(at, spacing, rel_tol=1e-9):
+                # the config's own number: a table keeps ten digits, the name of a run all
+                forces[choice, spacing] = [min(ridge.force, key=lambda f, to=force: abs(f - to))]
+    force_map = ForceMap(ridge.n, tuple(ridge.spacing), forces)
+    return replace(empty, map=force_map, thinned=not config.published_all)
 
 
 def load(*layers: Mapping | str | Path) -> Config:

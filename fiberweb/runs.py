@@ -9,18 +9,17 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from fiberweb.config import AUTHORS_SKIP, Config
+from fiberweb import studies
+from fiberweb.config import Config, lab
+from fiberweb.model.authors import SKIPPED_FRAMES
 from fiberweb.model.scene import Scene
-from fiberweb.studies.points import STUDIES, Best
 
-SETUPS = ("described", "published")
 # what a scene may have in place of its own without another limit of the step
 AT_ANY = {"force": 1.0, "seed": 0, "duration": 1.0, "disturbance": 0.0, "centre_lines": False}
-EXAMPLE = 8  # N of the crosshatch whose computations Fig. 1d shows
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class Run:
         scene: the physics.
         numerics: keyword arguments of `fiberweb.simulate` beside the scene.
         scoring: keyword arguments of `fiberweb.score` beside the response.
-        choice: where the study took the force from; see `fiberweb.studies.points.Point`.
+        choice: where the study took the force from; see `fiberweb.studies.base.Point`.
         name: what it is, and a hash of scene and numerics.
     """
 
@@ -58,22 +57,22 @@ class Run:
 
     def check(self) -> None:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""
-        from fiberweb.simulation.plan import resolve
+        from fiberweb.simulation.plan import plan
 
         try:
-            resolve(self.scene, **self.numerics)
+            plan(self.scene, **self.numerics)
         except ValueError as error:
             raise ValueError(f"{self.name}: {error}") from None
 
 
-def check(found: Iterable[Run]) -> None:
+def check(table: Iterable[Run]) -> None:
     """`Run.check` for runs of a table, where it can differ from one to the next.
 
     Finding the limit of a step costs some 20 ms and depends on no force, so it is done for every
     network if the config gives a step of its own, and for one run of each kind of model otherwise.
     """
     kinds = {}
-    for run in found:
+    for run in table:
         scene = run.scene
         model = (scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension)
         kind = (*model, math.isinf(scene.crossing_stiffness), json.dumps(run.numerics))
@@ -84,57 +83,36 @@ def check(found: Iterable[Run]) -> None:
         run.check()
 
 
-def runs(
-    config: Config, study: str, setup: str, best: Best | None = None, full: bool = False
-) -> list[Run]:
+def runs(config: Config, study: str, setup: str, best: Mapping | None = None) -> list[Run]:
     """The runs of a study in one setup, in its order, each once for each choice of the force.
 
     Args:
         config: the whole config.
         study, setup: names.
-        best: what the ridge found, for the studies that start from it; None for all that it
-            could find.
-        full: all that the authors ran, in the published setup too.
+        best: as for `fiberweb.config.lab`; only studies that start from it look at it.
     """
-    general = _given(config.numerics.model_dump()) if setup == "described" else {}
-    best = None if best is None else _of_config(best, config)
-    found = {}
-    for point in STUDIES[study](config, setup, best, full):
+    if setup not in studies.setups(study):
+        return []
+    described = setup == "described"
+    general = _given(config.numerics.model_dump()) if described else {}
+    table = {}
+    for point in studies.load(study).points(getattr(config, study), lab(config, setup, best)):
         scoring = {"alpha": config.scoring.alpha}
-        if setup == "published" and point.scene.network.topology == "polygon":
-            scoring["skip"] = AUTHORS_SKIP
+        if not described and point.scene.network.topology == "polygon":
+            scoring["skip"] = SKIPPED_FRAMES
         numerics = general if point.numerics is None else point.numerics
         run = Run(point.scene, numerics, scoring, point.choice)
-        found.setdefault((run.name, run.choice), run)
-    return list(found.values())
+        table.setdefault((run.name, run.choice), run)
+    return list(table.values())
 
 
 def run_table(config: Config) -> dict[str, Run]:
     """Every run that any study of any setup may ask for, by name."""
     return {
         run.name: run
-        for study in STUDIES
-        for setup in SETUPS
-        for run in runs(config, study, setup, full=True)
-    }
-
-
-def example(found: list[Run]) -> Run:
-    """The run whose computations Fig. 1d shows: the 8x8 crosshatch, or the nearest to it."""
-    crosshatches = [run for run in found if run.scene.network.topology == "crosshatch"]
-    return min(crosshatches or found, key=lambda run: abs(run.scene.network.n - EXAMPLE))
-
-
-def _of_config(best: Best, config: Config) -> Best:
-    """The spacings and forces that a table's stand for, which it rounds to ten digits."""
-
-    def nearest(values, to):
-        return min(values, key=lambda value: abs(value - to))
-
-    ridge = config.ridge
-    return {
-        (choice, nearest(ridge.spacing, spacing)): nearest(ridge.force, force)
-        for (choice, spacing), force in best.items()
+        for study in studies.STUDIES
+        for setup in studies.setups(study)
+        for run in runs(config, study, setup)
     }
 
 

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from fiberweb.engines import ENGINES
 from fiberweb.model.scene import SETUPS, NotNegative, Positive, PositiveOrPinned, Scene
+from fiberweb.simulation.plan import ACCURACIES
 
+# sections of the paper
 NETWORK = "Fiber network setup"
 CAPACITY = "Quantifying physical reservoir capacity"
 SIMULATION = "Simulation experiments"
 TOPOLOGY = "Fiber network topology"
+SCALING = "Scaling behavior of crosshatch networks"
+PRETENSION = "Pretension"
+FEATURES = "Feature selection"
+
+Item = TypeVar("Item")
+Some = Annotated[list[Item], Field(min_length=1)]  # a study without a run has no table to draw
+Size = Annotated[int, Field(ge=2)]
 
 
 def key(default, text: str, unit: str = "", paper: str = "", **constraints):
@@ -85,10 +95,10 @@ class SetupsSection(Section):
 class NumericsSection(Section):
     """How runs of the described setup are integrated; the published setup fixes its own."""
 
-    accuracy: Literal["draft", "standard", "fine", "reference"] | None = key(
+    accuracy: Literal[tuple(ACCURACIES)] | None = key(
         "standard", "chooses engine, mesh and step; null to choose them by the next keys"
     )
-    engine: Literal["kirchhoff", "cosserat", "elastica"] | None = key(
+    engine: Literal[tuple(ENGINES)] | None = key(
         None, "kirchhoff: no shear; cosserat: planar PyElastica; elastica: PyElastica itself"
     )
     elements_per_section: Annotated[int, Field(ge=1)] | None = key(
@@ -113,37 +123,3 @@ class ScoringSection(Section):
     """How capacities are computed."""
 
     alpha: Positive = key(0.01, "ridge penalty", "", SIMULATION)
-
-
-class StabilitySection(Section):
-    """The box in which predicted limits of the step are held against found ones; from the middle,
-    one key at a time."""
-
-    spacing: list[Positive] = key([0.005, 0.01, 0.02, 0.05, 0.2, 0.5], "spacings", "m")
-    diameter: list[Positive] = key([0.0002, 0.0005, 0.001, 0.004], "diameters", "m")
-    tension: list[NotNegative] = key([0.0, 0.1, 1.0, 5.0, 50.0], "tensions", "N")
-    stiffness: list[Positive] = key(
-        [1.0, 10.0, 1e3, 1e4, 1e5, 1e6], "springs of the crossings", "N/m"
-    )
-    buckling: list[Positive] = key([0.001, 2.0, 10.0, 100.0], "buckling numbers of the force")
-    elements: list[Annotated[int, Field(ge=1)]] = key([2, 3, 6, 8, 16], "elements per section")
-
-
-class AccuracySection(Section):
-    """What accuracy costs; the target `accuracy`, which no figure of the paper needs."""
-
-    networks: list[Annotated[int, Field(ge=2)]] = key([4, 8], "crosshatches, N; 4 is the ladder's")
-    length: Positive = key(0.5, "fibre length", "m")
-    buckling: Positive = key(0.8, "buckling number of the force")
-    seconds: Positive = key(1.0, "length of the runs whose trajectories are compared", "s")
-    duration: Positive = key(50.0, "length of the runs that are scored", "s")
-    window: Annotated[int, Field(ge=10)] = key(2000, "steps in which PyElastica is timed")
-    plane: list[Positive] = key(
-        [0.3, 0.5, 0.8, 1.5], "buckling numbers of the runs that may leave the plane"
-    )
-    plane_seconds: Positive = key(0.3, "length of these runs", "s")
-    steps: Annotated[int, Field(ge=100)] = key(4000, "steps of a run that looks for a limit")
-    drift_steps: Annotated[int, Field(ge=1_000_000)] = key(
-        10_000_000, "steps of the undamped runs that have to keep their energy"
-    )
-    stability: StabilitySection = StabilitySection()

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from fiberweb.model.mesh import Mesh
 from fiberweb.model.scene import Scene
 
-AUTHORS_STEP = 5e-6  # s
 CHUNK = 250  # samples between two returns to Python
 RUNAWAY = 1.0  # a node faster than this many axial wave speeds has left the physics
 
@@ -36,7 +35,7 @@ class Recording:
     Attributes:
         displacement: of each readout, shape (samples, readouts, 2), m; NaN once unstable.
         energy: kinetic, elastic, work done so far, dissipated so far, shape (samples, 4), J;
-            NaN once unstable, and throughout for an engine that keeps no books.
+            NaN once unstable, and throughout for an engine that keeps no ledger.
         unstable_at: when the run left the physics (s), or None.
     """
 
@@ -45,9 +44,37 @@ class Recording:
     unstable_at: float | None
 
 
+class Engine(Protocol):
+    """What the module of an engine offers.
+
+    Attributes:
+        PACKAGES: distributions whose versions a response records.
+        NANOSECONDS: CPU time of an element and step, to foretell a run's cost.
+    """
+
+    PACKAGES: tuple[str, ...]
+    NANOSECONDS: float
+
+    def refuse(self, mesh: Mesh) -> None:
+        """Raise ValueError if the scene needs what this engine does not model."""
+
+    def largest_step(self, mesh: Mesh) -> float:
+        """The largest stable step (s), without the Laplace filter (which lets larger steps
+        through by wiping out the modes they excite)."""
+
+    def integrate(self, mesh: Mesh, numerics: Numerics) -> Recording:
+        """Integrate a mesh; raises ValueError for what `refuse` does."""
+
+
 def steps_per_sample(scene: Scene, time_step: float) -> int:
     """Whole steps between two samples; the step is shortened to fit."""
     return max(1, int(np.ceil(1.0 / (scene.sample_rate * time_step) - 1e-9)))
+
+
+def fitted_step(scene: Scene, time_step: float) -> tuple[float, int]:
+    """The step that is taken (s), and how many make a sample."""
+    per_sample = steps_per_sample(scene, time_step)
+    return 1.0 / (scene.sample_rate * per_sample), per_sample
 
 
 def readout_arrays(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ from fiberweb.engines.base import (
     record_in_chunks,
     steps_per_sample,
 )
-from fiberweb.engines.books import (
+from fiberweb.engines.energy import (
     BOOKING,
     drive_value,
     in_bounds,
@@ -55,6 +55,17 @@ from fiberweb.engines.layout import Layout, Strips, lay_out, packed, strips
 from fiberweb.model.mesh import Mesh
 
 SHEAR_FACTOR = 27.0 / 28.0  # alpha_c of a round section at Poisson's ratio 1/2, as PyElastica's
+PACKAGES = ("numba", "numpy")
+NANOSECONDS = 4.0  # of CPU an element and step: `make bench`
+PLANAR, MODELS_SHEAR = True, True
+MESH_ERRORS = {}  # none on record for the described setup
+
+
+def largest_step(mesh: Mesh) -> float:
+    """The largest stable step (s); see `fiberweb.engines.stability`."""
+    from fiberweb.engines import stability
+
+    return stability.largest_step(mesh, "cosserat")
 
 
 def refuse(mesh: Mesh) -> None:

@@ -18,12 +18,23 @@ from fiberweb.engines.base import (
     readout_arrays,
     steps_per_sample,
 )
-from fiberweb.engines.books import drive_value
+from fiberweb.engines.energy import drive_value
 from fiberweb.engines.cosserat import refuse
 from fiberweb.model.mesh import Mesh
 
 MM, MICRONEWTON = 1e3, 1e6  # a metre in mm; a newton in g mm / s^2
 GRAM_PER_SECOND = 1e3  # of one N s/m, and of one N/m per second
+PACKAGES = ("pyelastica", "numba", "numpy")
+NANOSECONDS = 500.0  # of CPU an element and step: `make bench`
+PLANAR, MODELS_SHEAR = False, True
+MESH_ERRORS = {}  # none on record for the described setup
+
+
+def largest_step(mesh: Mesh) -> float:
+    """The largest stable step (s); see `fiberweb.engines.stability`."""
+    from fiberweb.engines import stability
+
+    return stability.largest_step(mesh, "elastica")
 
 
 class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.Damping):

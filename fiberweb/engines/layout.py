@@ -106,8 +106,8 @@ def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
 
 
 @dataclass(frozen=True)
-class Strips:
-    """How the kernels store the chain: fibre by fibre, or node by node.
+class Interleaving:
+    """How the kernels store the chain: fibre by fibre, or interleaved node by node.
 
     Fibres of as many nodes each lie side by side: node j of all of them, then node j + 1. What
     stands `stride` further is the next node, so a loop over all reads neighbours in whole cache
@@ -126,7 +126,7 @@ class Strips:
     place: np.ndarray
 
 
-def strips(mesh: Mesh, layout: Layout, gap: int) -> Strips:
+def interleave(mesh: Mesh, layout: Layout, gap: int) -> Interleaving:
     """The order in which the kernels take the nodes of a layout with `gap` ghosts."""
     counts = np.diff(mesh.first)
     stride = len(counts) if (counts == counts[0]).all() else 1
@@ -137,7 +137,7 @@ def strips(mesh: Mesh, layout: Layout, gap: int) -> Strips:
         nodes = (rows - gap + layout.at[mesh.first[:-1]]).ravel()
     place = np.zeros(len(layout.x), dtype=np.int64)
     place[nodes] = np.arange(len(nodes))
-    return Strips(stride, nodes, nodes[:-stride], place)
+    return Interleaving(stride, nodes, nodes[:-stride], place)
 
 
 def packed(*arrays: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -8,8 +8,7 @@ from matplotlib.figure import FigureBase
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 
 ROW = 6  # entries of a key that fit side by side
 CAPACITIES = {"c_nl": "Nonlinear capacity", "c_m": "Memory capacity"}
@@ -41,9 +40,9 @@ def key_beside_title(part: FigureBase, handles: dict[str, Artist]) -> None:
     legend.set_in_layout(False)  # the title reserves the room
 
 
-def floor_and_unstable(unstable: bool) -> dict[str, Line2D]:
-    """Legend entries of floors, and of unstable runs if there are any."""
-    handles = {sweep.INPUT_ALONE: Line2D([], [], **sweep.FLOOR_LINE)}
+def baseline_and_unstable(unstable: bool) -> dict[str, Line2D]:
+    """Legend entries of baselines, and of unstable runs if there are any."""
+    handles = {plots.INPUT_ALONE: Line2D([], [], **plots.BASELINE_LINE)}
     if unstable:
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
     return handles

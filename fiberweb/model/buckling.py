@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-DEFLECTION = 13.3e-3  # m, the lateral deflection that Eq. 3 holds constant
+DEFLECTION = 13.3e-3  # m, the lateral deflection that Eq. 3 holds constant (the paper's text)
 
 
 def second_moment(diameter: float) -> float:
@@ -15,14 +15,6 @@ def second_moment(diameter: float) -> float:
 def reference_force(spacing: float, bending_stiffness: float) -> float:
     """F_max = 48 delta EI / s^3 (N), Eq. 3, for s in m and EI in N m^2."""
     return 48 * DEFLECTION * bending_stiffness / spacing**3
-
-
-def authors_reference_force(spacing: float) -> float:
-    """Eq. 3 as the authors' scripts round it: 50e-6 N m^3 / s^3 (N), s in m.
-
-    To ten digits, as in their lists of forces, so that the same force is the same run.
-    """
-    return np.round(50e-6 / spacing**3, 10)
 
 
 def critical_force(spacing: float, diameter: float, youngs_modulus: float) -> float:

@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-KNOTS = 501  # of the authors' 100 s; a shorter run sees the beginning of the same series
+from fiberweb.model.authors import KNOTS, SEED
 
 
-def spline(seed: int = 1234, duration: float = 100.0, rate: float = 5.0) -> CubicSpline:
+def spline(seed: int = SEED, duration: float = 100.0, rate: float = 5.0) -> CubicSpline:
     """The input u(t), dimensionless, for 0 <= t <= duration.
 
     Args:
@@ -19,8 +19,9 @@ def spline(seed: int = 1234, duration: float = 100.0, rate: float = 5.0) -> Cubi
 
     Returns:
         A cubic spline (not-a-knot) through uniform values in [-1, 1], the first one 0. It
-        overshoots its knots: to 1.18 for seed 1234.
+        overshoots its knots: to 1.18 for the authors' seed.
     """
+    # a shorter run sees the beginning of the same series
     knots = max(KNOTS, int(np.ceil(duration * rate)) + 1)
     values = np.random.RandomState(seed).uniform(-1.0, 1.0, knots)
     values[0] = 0.0

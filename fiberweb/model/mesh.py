@@ -8,14 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fiberweb.model import authors_mesh
+from fiberweb.model.authors import ELEMENT
 from fiberweb.model.drive import spline
+from fiberweb.model.lines import Line, cut, nodes_about
+from fiberweb.model.readouts import places
 from fiberweb.model.scene import Scene
-
-ELEMENT_FLOOR = 2.0  # shortest element, in fibre diameters: below it a fibre is no slender rod
-AUTHORS_ELEMENT = 10e-3  # m
-# The authors' load: five nodes about the middle; a negative index skews what they meant to be
-# symmetric.
-AUTHORS_LOAD = {-2: 0.1875, -1: 0.125, 0: 0.125, 1: 0.1875, 2: 0.375}
 
 
 class Readout(NamedTuple):
@@ -101,8 +99,12 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
             f"elements_per_section = {elements_per_section} must be a whole number of at least 1"
         )
     network = scene.network
-    uniform = elements_per_section is None and network.topology == "crosshatch"
-    lines = _authors_lines(scene) if uniform else _section_lines(scene, elements_per_section)
+    if elements_per_section is not None:
+        lines = cut(scene, network.spacing / elements_per_section)
+    elif network.topology == "polygon":
+        lines = cut(scene, ELEMENT)
+    else:
+        lines = authors_mesh.cut_crosshatch(scene)
     position = np.concatenate([line.points for line in lines])
     first = np.cumsum([0] + [len(line.points) for line in lines])
     joints, stiffness, damping = _joints(scene, lines, first)
@@ -125,65 +127,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     )
 
 
-class _Line(NamedTuple):
-    """One meshed fibre."""
-
-    points: np.ndarray  # (nodes, 2)
-    along: np.ndarray  # distance of each node from the near end (m)
-    crossing_nodes: tuple[int, ...]  # in the order of the network's stations
-    section_middles: np.ndarray  # distance of each section's midpoint (m)
-
-
-def _section_lines(scene: Scene, elements_per_section: int | None) -> list[_Line]:
-    """Every crossing on a node, sections cut evenly."""
-    network = scene.network
-    target = (
-        AUTHORS_ELEMENT if elements_per_section is None else network.spacing / elements_per_section
-    )
-    lines = []
-    for fibre, (near, far) in enumerate(network.fibres):
-        ends = network.sections(fibre)
-        lengths = np.diff(ends)
-        most = np.maximum(1, np.floor(lengths / (ELEMENT_FLOOR * scene.diameter))).astype(int)
-        # the floor is for the short sections of a polygon; a uniform mesh is the user's choice
-        counts = np.maximum(1, np.round(lengths / target)).astype(int)
-        if network.topology == "polygon":
-            counts = np.minimum(counts, most)
-        along = np.concatenate(
-            [[0.0]] + [np.linspace(a, b, c + 1)[1:] for a, b, c in zip(ends, ends[1:], counts)]
-        )
-        direction = (far - near) / ends[-1]
-        lines.append(
-            _Line(
-                near + along[:, None] * direction,
-                along,
-                tuple(np.cumsum(counts)[:-1].tolist()),
-                0.5 * (ends[1:] + ends[:-1]),
-            )
-        )
-    return lines
-
-
-def _authors_lines(scene: Scene) -> list[_Line]:
-    """The authors' crosshatch: equal elements, crossings on the node below their place, and
-    the fibres laid through those nodes."""
-    network = scene.network
-    coarse = network.spacing > 0.03 + 1e-9  # 5 mm elements at 20 and 30 mm
-    count = round(network.length / (AUTHORS_ELEMENT if coarse else AUTHORS_ELEMENT / 2))
-    count = max(50, count) if coarse else count
-    along = np.linspace(0.0, network.length, count + 1)
-    grid = np.linspace(0, count + 1, network.n + 2)
-    nodes = tuple(grid[1:-1].astype(int).tolist())
-    middles = along[(0.5 * (grid[1:] + grid[:-1])).astype(int)]
-    lines = []
-    for across in along[list(nodes)]:
-        lines.append(
-            _Line(np.column_stack([along, np.full_like(along, across)]), along, nodes, middles)
-        )
-    return lines + [line._replace(points=line.points[:, ::-1]) for line in lines]
-
-
-def _joints(scene: Scene, lines: list[_Line], first: np.ndarray):
+def _joints(scene: Scene, lines: list[Line], first: np.ndarray):
     """Pairs of nodes at each crossing, with their stiffness and damping."""
     network = scene.network
     members: list[list[tuple[int, int]]] = [[] for _ in network.crossings]  # (fibre, node)
@@ -192,13 +136,14 @@ def _joints(scene: Scene, lines: list[_Line], first: np.ndarray):
             members[crossing].append((fibre, first[fibre] + node))
     authors_polygon = scene.setup == "published" and network.topology == "polygon"
     if authors_polygon:
-        members += _vertices(network, first)
+        members += authors_mesh.vertices(network, first)
     pairs, scale = [], []
     for group in members:
         for (fibre_a, a), (fibre_b, b) in combinations(group, 2):
-            factor = _authors_polygon_scale(network, fibre_a, fibre_b) if authors_polygon else 1.0
             at_end = a in first[:-1] or a + 1 in first[1:]
-            factor = 1.0 if at_end else factor
+            factor = 1.0
+            if authors_polygon and not at_end:
+                factor = authors_mesh.crossing_share(network, fibre_a, fibre_b)
             if factor:
                 pairs.append((a, b))
                 scale.append(factor)
@@ -210,33 +155,15 @@ def _joints(scene: Scene, lines: list[_Line], first: np.ndarray):
     )
 
 
-def _authors_polygon_scale(network, a: int, b: int) -> float:
-    """Stiffness of a joint relative to the others: a hundredth between two diagonals, and none
-    between the last diagonal and the first."""
-    diameters = network.n // 2
-    if a < diameters or b < diameters:
-        return 1.0
-    return 0.0 if {a, b} == {diameters, diameters + network.n - 1} else 0.01
-
-
-def _vertices(network, first: np.ndarray) -> list[list[tuple[int, int]]]:
-    """Fibre ends that meet at each vertex, as (fibre, node)."""
-    groups: dict[tuple[float, float], list[tuple[int, int]]] = {}
-    for fibre, ends in enumerate(network.fibres):
-        for end, node in zip(ends, (first[fibre], first[fibre + 1] - 1)):
-            groups.setdefault((round(end[0], 9) + 0.0, round(end[1], 9) + 0.0), []).append(
-                (fibre, node)
-            )
-    return list(groups.values())
-
-
-def _ends(scene: Scene, lines: list[_Line], first: np.ndarray):
+def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
     """Held displacements and tension of every node."""
     network = scene.network
     held = np.zeros((first[-1], 2), dtype=bool)
     pull = np.zeros((first[-1], 2))
     held[first[:-1]] = True
-    authors_polygon = scene.setup == "published" and network.topology == "polygon"
+    pulled = range(len(lines))
+    if scene.setup == "published":
+        pulled = authors_mesh.pulled(network)
     for fibre, line in enumerate(lines):
         direction = (line.points[-1] - line.points[0]) / line.along[-1]
         far = first[fibre + 1] - 1
@@ -247,23 +174,19 @@ def _ends(scene: Scene, lines: list[_Line], first: np.ndarray):
                     "'pinned'"
                 )
             held[far] = abs(direction) < 0.5
-        if not authors_polygon or fibre < network.n // 2:  # the authors pull the diameters only
+        if fibre in pulled:
             pull[far] = scene.tension * direction
     return held, pull
 
 
-def _load(scene: Scene, lines: list[_Line], first: np.ndarray) -> np.ndarray:
+def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
     """Force on every node for u = 1: lateral, on the driven fibre."""
     network = scene.network
-    load = np.zeros((first[-1], 2))
     if scene.setup == "published" and network.topology == "crosshatch":
-        fibre = 0 if network.n == 2 else network.driven_fibre
-        middle = first[fibre] + (len(lines[fibre].points) - 1) // 2
-        for offset, weight in AUTHORS_LOAD.items():
-            load[middle + offset, 1] -= weight * scene.force
-        return load
+        return authors_mesh.load_crosshatch(scene, first)
+    load = np.zeros((first[-1], 2))
     fibre = network.driven_fibre
-    nodes, weights = _at(lines[fibre].along, network.driven_distance)
+    nodes, weights = nodes_about(lines[fibre].along, network.driven_distance)
     near, far = network.fibres[fibre]
     lateral = np.array([-(far - near)[1], (far - near)[0]]) / np.linalg.norm(far - near)
     for node, weight in zip(nodes, weights):
@@ -271,36 +194,17 @@ def _load(scene: Scene, lines: list[_Line], first: np.ndarray) -> np.ndarray:
     return load
 
 
-def _at(along: np.ndarray, distance: float):
-    """The nodes about a distance along a fibre, four where there are as many, and the weights of
-    the polynomial through them."""
-    count = min(4, len(along))
-    left = np.searchsorted(along, distance * (1 + 1e-12)) - count // 2
-    left = int(np.clip(left, 0, len(along) - count))
-    near = along[left : left + count]
-    weights = [
-        np.prod([(distance - b) / (a - b) for b in np.delete(near, i)]) for i, a in enumerate(near)
-    ]
-    return tuple(range(left, left + count)), tuple(np.round(weights, 12).tolist())
-
-
-def _readouts(scene: Scene, lines: list[_Line], first: np.ndarray) -> tuple[Readout, ...]:
-    """Crossings (read on their first fibre), then section midpoints, fibre by fibre; then every
-    node of every fibre if the scene asks for centre lines."""
-    network = scene.network
-    seen, readouts = set(), []
-    for fibre, stations in enumerate(network.stations):
-        for number, ((crossing, _), node) in enumerate(zip(stations, lines[fibre].crossing_nodes)):
-            if crossing not in seen:
-                seen.add(crossing)
-                readouts.append(_readout("crossing", fibre, number, first[fibre], (node,), (1.0,)))
-    for fibre, line in enumerate(lines):
-        kind = "section_midpoint"
-        if network.topology == "crosshatch":
-            kind = "horizontal_midpoint" if fibre < network.n else "vertical_midpoint"
-        for section, distance in enumerate(line.section_middles):
-            nodes, weights = _at(line.along, distance)
-            readouts.append(_readout(kind, fibre, section, first[fibre], nodes, weights))
+def _readouts(scene: Scene, lines: list[Line], first: np.ndarray) -> tuple[Readout, ...]:
+    """Those of the network, where the mesh has them; then every node of every fibre if the scene
+    asks for centre lines."""
+    readouts = []
+    for kind, fibre, section, *_ in places(scene.network):
+        line = lines[fibre]
+        if kind == "crossing":
+            nodes, weights = (line.crossing_nodes[section],), (1.0,)
+        else:
+            nodes, weights = nodes_about(line.along, line.section_middles[section])
+        readouts.append(_readout(kind, fibre, section, first[fibre], nodes, weights))
     if scene.centre_lines:
         for fibre, line in enumerate(lines):
             for number in range(len(line.points)):

@@ -11,29 +11,22 @@ import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
 from fiberweb.errors import sentence
-from fiberweb.model import buckling
+from fiberweb.model import authors, buckling
 from fiberweb.model.network import Network, from_spec
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
 
-# What each setup does where the scene leaves a field open. `described` is the paper's text;
-# its damping and crossings are unreported there, so these are the calibrated values.
-# `published` is the authors' code: 10 /s on velocity (and 40 /s on rotation), a stiff pin and
-# the order-6 Laplace filter on the crosshatch only, a softer pin on the polygon.
-SETUPS = {
-    ("described", "crosshatch"): dict(
-        crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped"
-    ),
-    ("published", "crosshatch"): dict(
-        crossing_stiffness=1e6, crossing_damping=0.0, damping=10.0, filter_order=6, ends="sliding"
-    ),
-    ("published", "polygon"): dict(
-        crossing_stiffness=1e3, crossing_damping=0.0, damping=10.0, filter_order=0, ends="pinned"
-    ),
+# What each setup does where the scene leaves a field open. `described` is the paper's text; its
+# damping and crossings are unreported there, so these are the calibrated values. `published` is
+# the authors' code.
+DESCRIBED = dict(
+    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped"
+)
+SETUPS = {("described", topology): DESCRIBED for topology in authors.PHYSICS} | {
+    ("published", topology): values for topology, values in authors.PHYSICS.items()
 }
-SETUPS["described", "polygon"] = SETUPS["described", "crosshatch"]
 
 
 @dataclass(frozen=True)
@@ -74,7 +67,7 @@ class Scene:
     force: Positive | None = None
     tension: NotNegative = 0.01
     duration: Positive = 100.0
-    seed: Annotated[int, Field(ge=0, strict=True)] = 1234
+    seed: Annotated[int, Field(ge=0, strict=True)] = authors.SEED
     sample_rate: Positive = 250.0
     drive_rate: Positive = 5.0
     diameter: Positive = 2e-3
@@ -109,7 +102,7 @@ class Scene:
 
     def _reference_force(self) -> float:
         if self.setup == "published":
-            return float(buckling.authors_reference_force(self.network.spacing))
+            return float(authors.reference_force(self.network.spacing))
         return float(buckling.reference_force(self.network.spacing, self.bending_stiffness))
 
     @property

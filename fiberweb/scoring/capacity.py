@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from fiberweb.model.readouts import AXES, as_signals
 from fiberweb.scoring.regression import Fit, Options, checked, fit_targets, mean_of
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class Traces:
 
 
 def trivial_readouts(u: np.ndarray, sample_rate: float) -> dict[str, np.ndarray]:
-    """Readouts made of the input (T,) alone: the floors that a reservoir has to beat.
+    """Readouts made of the input (T,) alone: the baselines that a reservoir has to beat.
 
     ``u`` (T, 1); ``derivatives`` (T, 4): u and its first three time derivatives (sample_rate in
     Hz); ``powers`` (T, 3): u, u^2, u^3. Derivatives are those of the cubic spline through the
@@ -139,9 +140,9 @@ def own_scoring(response: xr.Dataset) -> str:
 
 
 def signals(response: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Input (T,) and readouts (T, 2m) of a response: every readout's x, then every readout's y."""
+    """Input (T,) and signals (T, 2m) of a response, ordered as by `fiberweb.model.readouts`."""
     moved = response["displacement"].transpose("time", "readout", "axis")
-    return response["input"].values, np.hstack([moved.sel(axis=a).values for a in ("x", "y")])
+    return response["input"].values, as_signals(*(moved.sel(axis=a).values for a in AXES))
 
 
 def traces(
@@ -157,9 +158,9 @@ def traces(
 
     rate = float(response.attrs["sample_rate"])
     scoring = scoring or own_scoring(response)
-    found = predict(*signals(response), rate, orders, lags, scoring=scoring, **options)
-    target = np.hstack([found.nonlinear_target, found.memory_target]).T
-    estimate = np.hstack([found.nonlinear, found.memory]).T
+    estimates = predict(*signals(response), rate, orders, lags, scoring=scoring, **options)
+    target = np.hstack([estimates.nonlinear_target, estimates.memory_target]).T
+    estimate = np.hstack([estimates.nonlinear, estimates.memory]).T
     known = np.isfinite(target)
     error = np.where(known, estimate - target, 0.0)
     spread = [np.var(row[mask]) * mask.sum() for row, mask in zip(target, known, strict=True)]
@@ -170,7 +171,7 @@ def traces(
             "prediction": (("trace", "time"), estimate),
             "c": ("trace", 1.0 - (error**2).sum(axis=1) / spread),
         },
-        {"trace": names, "time": ("time", found.time, _labels("time", "s"))},
+        {"trace": names, "time": ("time", estimates.time, _labels("time", "s"))},
         {key: response.attrs[key] for key in _KEPT if key in response.attrs},
     )
 
@@ -182,7 +183,7 @@ def score(
 
     response: ``input(time)``; ``displacement(time, readout, axis)`` in m, axis 'x' and 'y'; attrs
     ``status`` ('ok' or 'unstable'), ``setup`` ('described' or 'published'), ``sample_rate`` in Hz.
-    Signals: every readout's x, then every readout's y. scoring None: 'published' for that setup,
+    Signals: see `signals`. scoring None: 'published' for that setup,
     else 'clean'. options: fields of `Options`. Errors as in `score_arrays`; but an unstable
     response is a result: all NaN, and the attr ``status`` says so.
     """

@@ -1,10 +1,9 @@
 """Named groups of signals: which displacements of which readouts (paper, section 'Output feature
 down-selection').
 
-A signal is one displacement of one readout. Signals come as `fiberweb.scoring.capacity.signals` orders
-them: every readout's x, then every readout's y. A crosshatch is held at its left and lower ends
-and pulled at its right and upper ones; rows count from the bottom, columns from the left, and
-section j of a fibre from its held end, all from 0.
+A signal is one displacement of one readout; their order is that of `fiberweb.model.readouts`. A
+crosshatch is held at its left and lower ends and pulled at its right and upper ones; rows count
+from the bottom, columns from the left, and section j of a fibre from its held end, all from 0.
 """
 
 from __future__ import annotations
@@ -14,7 +13,9 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
+from fiberweb.model.authors import SPRINGS_CROSSINGS, SPRINGS_MIDPOINTS
 from fiberweb.model.network import Network
+from fiberweb.model.readouts import AXES, Place, as_signals, places
 
 ALL = "all"
 KINDS = ("crossing", "horizontal_midpoint", "vertical_midpoint")
@@ -24,11 +25,6 @@ REDUCED = (LATERAL, NEAR_SPRINGS, NEAR_ACTUATION)
 GROUPS = (ALL, *SUBGROUPS, *REDUCED)
 OF_POLYGON = (ALL, "crossing_x", "crossing_y")
 
-# The authors chose the readouts near the springs by hand: for each row the first column of its
-# crossings, and the first section of its midpoints. Columns of vertical midpoints are alike.
-SPRINGS_CROSSINGS = {4: (3, 1, 1, 0), 6: (5, 4, 3, 2, 1, 0)}
-SPRINGS_MIDPOINTS = {4: (3, 2, 1, 1), 6: (5, 5, 3, 3, 2, 1)}
-
 
 def readouts(network: Network) -> pd.DataFrame:
     """What a simulation of the network records, in its order.
@@ -37,21 +33,7 @@ def readouts(network: Network) -> pd.DataFrame:
         One row a readout: kind, fibre, section (number of the crossing or of the section along
         the fibre), x and y (rest position in m).
     """
-    seen, rows = set(), []
-    for fibre, stations in enumerate(network.stations):
-        for number, (crossing, _) in enumerate(stations):
-            if crossing not in seen:
-                seen.add(crossing)
-                rows.append(("crossing", fibre, number, *network.crossings[crossing]))
-    for fibre, (near, far) in enumerate(network.fibres):
-        kind = "section_midpoint"
-        if network.topology == "crosshatch":
-            kind = "horizontal_midpoint" if fibre < network.n else "vertical_midpoint"
-        ends = network.sections(fibre)
-        for section, distance in enumerate(0.5 * (ends[1:] + ends[:-1])):
-            place = near + (far - near) * distance / ends[-1]
-            rows.append((kind, fibre, section, *place))
-    return pd.DataFrame(rows, columns=["kind", "fibre", "section", "x", "y"])
+    return pd.DataFrame(places(network), columns=list(Place._fields))
 
 
 def names(network: Network) -> tuple[str, ...]:
@@ -95,12 +77,13 @@ def mask(group: str, network: Network, points: Mapping) -> np.ndarray:
     if group in SUBGROUPS:
         of_kind, axis = group.rsplit("_", 1)
         chosen = kind == of_kind
-        return np.concatenate([chosen & (axis == "x"), chosen & (axis == "y")])
+        return as_signals(*(chosen & (axis == each) for each in AXES))
     if group == LATERAL:
-        return np.concatenate([kind == "vertical_midpoint", kind == "horizontal_midpoint"])
+        return as_signals(kind == "vertical_midpoint", kind == "horizontal_midpoint")
     across, along = _places(kind, points, network.n)
-    near = _near_springs if group == NEAR_SPRINGS else _near_actuation
-    return np.tile(near(network.n, kind == "crossing", across, along), 2)
+    rule = _near_springs if group == NEAR_SPRINGS else _near_actuation
+    near = rule(network.n, kind == "crossing", across, along)
+    return as_signals(near, near)
 
 
 def _places(kind: np.ndarray, points: Mapping, n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.linalg import LinAlgError, blas, cho_factor, cho_solve
 
+from fiberweb.model.authors import SHUFFLE_SEED
+
 SCORINGS = ("clean", "published")
-SHUFFLE_SEED = 42  # the authors' random_state
 
 
 @dataclass(frozen=True)
@@ -97,6 +98,11 @@ def recall_targets(u: np.ndarray, lags: Sequence[int]) -> np.ndarray:
     return targets
 
 
+def targets(u: np.ndarray, orders: Sequence[int], lags: Sequence[int]) -> np.ndarray:
+    """`legendre_targets`, then `recall_targets`: (T, n_orders + n_lags)."""
+    return np.hstack([legendre_targets(u, orders), recall_targets(u, lags)])
+
+
 def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
     """u (T - skip,) and readouts (T - skip, p) as floats; ValueError says what is wrong."""
     if not 0 < sample_rate < math.inf:
@@ -133,14 +139,14 @@ def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
 def fit_targets(u, readouts, orders, lags, horizon, options) -> tuple[Fit, Fit]:
     """Fits of P_k for the orders and of recall for the lags; lags and horizon in frames."""
     u, n = scale_input(u), len(orders)
-    target = np.hstack([legendre_targets(u, orders), recall_targets(u, lags)])
+    target = targets(u, orders, lags)
     if options.scoring == "clean":
         starts = np.full(target.shape[1], horizon)
-        fitted = slice(horizon, _training_end(horizon, len(u), options.split))
+        fitted = slice(horizon, training_end(horizon, len(u), options.split))
     else:
         starts = np.array([0] * n + list(lags))
         fitted = slice(None)
-    x = _standardise(readouts, fitted)
+    x = standardise(readouts, fitted)
     if options.shuffle:
         nonlinear = _fit_shuffled(x, target[:, :n], options)
         return nonlinear, _fit(x, target[:, n:], starts[n:], options)
@@ -148,7 +154,7 @@ def fit_targets(u, readouts, orders, lags, horizon, options) -> tuple[Fit, Fit]:
     return fit[:, :n], fit[:, n:]
 
 
-def _standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
+def standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
     """Readouts with mean 0 and variance 1 over the fitted rows; a still column becomes 0."""
     mean = readouts[fitted].mean(axis=0)
     x = readouts - mean
@@ -159,7 +165,7 @@ def _standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
     return x
 
 
-def _training_end(start: int, frames: int, split: float) -> int:
+def training_end(start: int, frames: int, split: float) -> int:
     """First test frame of a split of frames [start, frames), whose test part rounds up."""
     return start + math.floor(split * (frames - start) + 1e-9)  # 0.57 * 100 falls short of 57
 
@@ -167,7 +173,7 @@ def _training_end(start: int, frames: int, split: float) -> int:
 def _fit(x, target, starts, options) -> Fit:
     """Ridge estimates of target (T, q) from x (T, p); target j is split from row starts[j] on."""
     row = np.arange(len(x))[:, None]
-    ends = np.array([_training_end(start, len(x), options.split) for start in starts])
+    ends = np.array([training_end(start, len(x), options.split) for start in starts])
     train, test = (row >= starts) & (row < ends), row >= ends
     mean = mean_of(target, train)
     cross = x.T @ np.where(train, target - mean, 0.0)
@@ -178,9 +184,10 @@ def _fit(x, target, starts, options) -> Fit:
 
 
 def _fit_shuffled(x, target, options) -> Fit:
-    """As `_fit`, on the rows that sklearn's train_test_split(random_state=42) would choose."""
+    """As `_fit`, on the rows that sklearn's train_test_split would choose for the
+    authors' random_state."""
     order = np.random.RandomState(SHUFFLE_SEED).permutation(len(x))
-    tested = len(x) - _training_end(0, len(x), options.split)
+    tested = len(x) - training_end(0, len(x), options.split)
     order = np.roll(order, -tested)  # sklearn tests on the first of the permutation, `_fit` last
     fit = _fit(x[order], target[order], np.zeros(target.shape[1], dtype=int), options)
     return fit[np.argsort(order)]

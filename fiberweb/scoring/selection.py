@@ -3,7 +3,6 @@ selection."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,9 +12,10 @@ from scipy.linalg import svdvals
 from fiberweb.scoring.regression import (
     Options,
     checked,
-    legendre_targets,
-    recall_targets,
     scale_input,
+    standardise,
+    targets,
+    training_end,
 )
 
 TARGETS = ("c_nl", "c_m")
@@ -103,18 +103,13 @@ def _parts(u, readouts, sample_rate, options) -> tuple[_Part, _Part, np.ndarray]
     """Training part, test part, and which of the targets are Legendre polynomials."""
     u, readouts = checked(u, readouts, sample_rate, options)
     horizon = round(options.horizon * sample_rate)
-    u = scale_input(u)
-    lags = np.arange(horizon + 1)
-    z = np.hstack([legendre_targets(u, ORDERS), recall_targets(u, lags)])[horizon:]
-    x = readouts[horizon:]
-    end = math.floor(options.split * len(x) + 1e-9)
-    mean = x[:end].mean(axis=0)
-    deviation = x[:end].std(axis=0)
-    still = deviation <= len(x) * np.finfo(float).eps * np.abs(mean)  # only round-off moves
-    x = (x - mean) / np.where(still, np.inf, deviation)
-    z = z - z[:end].mean(axis=0)
+    end = training_end(horizon, len(u), options.split)
+    train, test = slice(horizon, end), slice(end, None)
+    x = standardise(readouts, train)
+    z = targets(scale_input(u), ORDERS, np.arange(horizon + 1))
+    z -= z[train].mean(axis=0)
     nonlinear = np.arange(z.shape[1]) < len(ORDERS)
-    return _moments(x[:end], z[:end]), _moments(x[end:], z[end:]), nonlinear
+    return _moments(x[train], z[train]), _moments(x[test], z[test]), nonlinear
 
 
 def _moments(x: np.ndarray, z: np.ndarray) -> _Part:
@@ -130,10 +125,10 @@ def _pursue(train: _Part, test: _Part, wanted: np.ndarray, alpha: float):
         training and on the test part.
     """
     # Gram-Schmidt in the Gram matrix: ``left`` and ``cross`` are what the chosen signals leave of
-    # it and of its product with the targets; column i of ``made`` makes signal i's remainder.
+    # it and of its product with the targets; column i of ``makers`` makes signal i's remainder.
     left = train.gram + alpha * np.eye(len(train.gram))
     cross = train.cross
-    made = np.eye(len(left))
+    makers = np.eye(len(left))
     residuals = [_Residual(train), _Residual(test)]
     free = np.diag(train.gram) > 0
     scale = np.where(wanted, 1.0 / train.spread, 0.0)
@@ -143,13 +138,13 @@ def _pursue(train: _Part, test: _Part, wanted: np.ndarray, alpha: float):
         best = int(np.argmax(gain))
         share = left[best] / left[best, best]
         weight = cross[best] / left[best, best]
-        c.append([residual.add(made[:, best], weight) for residual in residuals])
+        c.append([residual.add(makers[:, best], weight) for residual in residuals])
         chosen.append(best)
         share[~free] = 0.0
         share[best] = 0.0
         cross = cross - np.outer(share, cross[best])
         left = left - np.outer(share, left[best])
-        made = made - np.outer(made[:, best], share)
+        makers = makers - np.outer(makers[:, best], share)
         free[best] = False
     c = np.array(c).reshape(len(chosen), 2, len(scale))
     return np.array(chosen, dtype=int), c[:, 0], c[:, 1]

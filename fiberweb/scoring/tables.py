@@ -1,4 +1,4 @@
-"""Tables: one row a run (or a point of a run's curve), as CSV with the same bytes every time."""
+"""The rows of tables: one row per run, or per point of a run's curve."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pandas as pd
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import capacity
 from fiberweb.simulation import dataset
+from fiberweb.tables import ordered
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,12 +35,8 @@ NUMERICS = {
     "elements_per_section": lambda _, scored: scored.attrs["elements_per_section"],
     "time_step_s": lambda _, scored: scored.attrs["time_step"],
 }
-BEST_COLUMNS = ("setup", "spacing_m", "choice", "force_N", "buckling_number", "capacity")
 CURVE_COLUMNS = ("setup", "topology", "n", "target", "at", "c", "c_train", "c_raw", "run")
-FLOOR_COLUMNS = ("readout", "c_nl", "c_m")
-# Rows are put in this order, so that a table does not depend on the order in which runs end.
-SORTED_BY = ("setup", "topology", "n", "spacing_m", "force_N", "tension_N", "run", "target", "at")
-FLOAT_FORMAT = "%.10g"
+BASELINE_COLUMNS = ("readout", "c_nl", "c_m")
 
 
 def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataFrame:
@@ -64,39 +61,13 @@ def study(capacity_paths: Sequence[str | Path], choices: Sequence[str]) -> pd.Da
 
     Args:
         capacity_paths: as for `rows`; a run that two choices agree on comes twice.
-        choices: of each path, see `fiberweb.studies.points.Point`.
+        choices: of each path, see `fiberweb.studies.base.Point`.
     """
     records = []
     for path, choice in zip(capacity_paths, choices, strict=True):
         scene, scored = _read_run(path)
         records.append(_row(scene, scored, {"force_choice": choice} | PHYSICS | NUMERICS))
     return _frame(records, (*COLUMNS, "force_choice", *PHYSICS, *NUMERICS))
-
-
-def best_unbuckled(ridge: pd.DataFrame) -> pd.DataFrame:
-    """The force below B = 1 with the best C_nl, and the one with the best C_m, of each spacing.
-
-    Args:
-        ridge: the ridge's table of one setup.
-
-    Returns:
-        Columns setup, spacing_m, choice ("best_c_nl" or "best_c_m"), force_N, buckling_number and
-        capacity; no row where no run below B = 1 was stable.
-    """
-    stable = ridge[(ridge["status"] == "ok") & (ridge["buckling_number"] < 1.0)]
-    records = []
-    for spacing, frame in stable.groupby("spacing_m"):
-        for column in ("c_nl", "c_m"):
-            row = frame.loc[frame[column].idxmax()]
-            found = (row["force_N"], row["buckling_number"], row[column])
-            records.append((row["setup"], spacing, f"best_{column}", *found))
-    return _frame(records, BEST_COLUMNS)
-
-
-def read_best(path: str | Path) -> dict[tuple[str, float], float]:
-    """What `best_unbuckled` found: (choice, spacing in m) to force in N."""
-    frame = read(path)
-    return dict(zip(zip(frame["choice"], frame["spacing_m"]), frame["force_N"]))
 
 
 def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
@@ -118,10 +89,10 @@ def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
     return _frame(records, CURVE_COLUMNS)
 
 
-def floors(
+def input_baselines(
     response_path: str | Path, alpha: float = 0.01, scoring: str | None = None, **options: object
 ) -> pd.DataFrame:
-    """What readouts made of the input alone would score: the floor of every capacity.
+    """Input-only baselines: what readouts made of the input alone score.
 
     Args:
         response_path: a response; of it only the input and its sample rate are used, and every
@@ -130,11 +101,10 @@ def floors(
             the response's setup.
 
     Returns:
-        A frame of `FLOOR_COLUMNS`, readout being "u", "derivatives" or "powers".
+        A frame of `BASELINE_COLUMNS`, readout being "u", "derivatives" or "powers".
     """
     response = dataset.load(response_path)
-    if scoring is None:
-        scoring = "published" if response.attrs["setup"] == "published" else "clean"
+    scoring = scoring or capacity.own_scoring(response)
     sample_rate = float(response.attrs["sample_rate"])
     u = response["input"].values  # whole even in an unstable run
     records = []
@@ -143,43 +113,7 @@ def floors(
             u, readouts, sample_rate, scoring=scoring, alpha=alpha, **options
         )
         records.append((name, scored.c_nl, scored.c_m))
-    return _frame(records, FLOOR_COLUMNS)
-
-
-def merge(paths: Iterable[str | Path]) -> pd.DataFrame:
-    """The rows of several tables with the same columns, such as one table of each setup.
-
-    Raises:
-        ValueError: no table, or tables whose columns are not the same.
-    """
-    frames = {Path(path): read(path) for path in paths}
-    if not frames:
-        raise ValueError("there is no table to merge; give at least one path")
-    (first, head), *others = frames.items()
-    for path, frame in others:
-        if list(frame.columns) != list(head.columns):
-            raise ValueError(
-                f"{path} has the columns {', '.join(frame.columns)} but {first} has "
-                f"{', '.join(head.columns)}; merge tables of one kind only"
-            )
-    filled = [frame for frame in frames.values() if len(frame)] or [head]
-    return _sorted(pd.concat(filled, ignore_index=True))
-
-
-def write(frame: pd.DataFrame, path: str | Path) -> None:
-    """Write a table as CSV: same frame, same bytes, however its rows were ordered."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(path.name + ".partial")
-    # encoding and newline are fixed because both would follow the machine
-    with partial.open("w", encoding="utf-8", newline="") as file:
-        _sorted(frame).to_csv(file, index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
-    partial.replace(path)  # a killed job leaves no half table under the right name
-
-
-def read(path: str | Path) -> pd.DataFrame:
-    """The table that `write` wrote; an empty cell is NaN."""
-    return pd.read_csv(path)
+    return _frame(records, BASELINE_COLUMNS)
 
 
 def _read_run(given):
@@ -207,10 +141,4 @@ def _row(scene: Scene, scored, extra: dict[str, object]) -> dict:
 
 
 def _frame(records: list, columns: tuple[str, ...]) -> pd.DataFrame:
-    return _sorted(pd.DataFrame(records, columns=list(columns)))
-
-
-def _sorted(frame: pd.DataFrame) -> pd.DataFrame:
-    """Rows in the order of `SORTED_BY`; rows that are equal in it keep theirs."""
-    keys = [name for name in SORTED_BY if name in frame.columns]
-    return frame.sort_values(keys, kind="stable", ignore_index=True) if keys else frame
+    return ordered(pd.DataFrame(records, columns=list(columns)))

@@ -2,27 +2,80 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from fiberweb.engines import ENGINES, load
 from fiberweb.errors import unknown_key
+from fiberweb.model.authors import STEP
 from fiberweb.model.scene import Scene
 
-ENGINES = ("kirchhoff", "cosserat", "elastica")
+if TYPE_CHECKING:
+    from fiberweb.engines.base import Numerics
+    from fiberweb.model.mesh import Mesh
+
 ACCURACIES = {"draft": 2, "standard": 4, "fine": 8, "reference": 16}  # elements per section
-SAFETY = 0.9  # of the linear limit: compression and tension stiffen a fibre a little
-# The same above a share of EA in force or tension. Under load steps of 0.87 to 1.0 of the linear
-# limit were found to be too long (found_loaded_s of the stability table).
-VIOLENT = {1e-3: 0.7, 1e-2: 0.4}
-STUBBIEST = 5.0  # spacing in diameters at which leaving out shear costs some 0.2 (see `explain`)
+DEFAULT_ENGINE = {"described": "kirchhoff", "published": "cosserat"}
+# Shares of the stability limit that the automatic step takes, and the smaller ones from a share of
+# EA in force or tension on: compression, tension and bow stiffen a fibre beyond the straight one
+# that the limit is of. Source: found_loaded_s of stability.csv, where steps of 0.87 to 1.0 of the
+# limit were found to be too long under load.
+SAFETY = 0.9
+SAFETY_BY_STRAIN = {1e-3: 0.7, 1e-2: 0.4}
+# Spacing in diameters below which leaving out shear costs more than some 0.2 of the trajectories.
+# Source: model_ladder.csv has 0.0023 at 50 diameters, and it grows as the inverse square.
+MIN_SLENDERNESS = 5.0
 
 
-def resolve(
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """How a scene is integrated: made by `plan`, run by `fiberweb.simulation.simulate.run` and
+    put into words by `fiberweb.simulation.explain.describe`.
+
+    Attributes:
+        mesh: the scene cut into elements.
+        engine: "kirchhoff", "cosserat" or "elastica".
+        elements_per_section: None is the authors' mesh.
+        time_step: that was asked for, s; None for a share of the limit, see `safety`.
+        accuracy: that was asked for, or None.
+    """
+
+    mesh: Mesh
+    engine: str
+    elements_per_section: int | None
+    time_step: float | None
+    accuracy: str | None = None
+
+    @property
+    def scene(self) -> Scene:
+        """What is integrated."""
+        return self.mesh.scene
+
+    @cached_property
+    def limit(self) -> float:
+        """Stability limit of the time step without the Laplace filter, s."""
+        return load(self.engine).largest_step(self.mesh)
+
+    @cached_property
+    def numerics(self) -> Numerics:
+        """What the engine is given beside the mesh."""
+        from fiberweb.engines.base import Numerics
+
+        step = safety(self.scene) * self.limit if self.time_step is None else self.time_step
+        return Numerics(self.engine, self.elements_per_section, step)
+
+
+def plan(
     scene: Scene,
     accuracy: str | None = None,
+    *,
     engine: str | None = None,
     elements_per_section: int | None = None,
     time_step: float | None = None,
     force_time_step: bool = False,
-):
-    """The numerics of a run.
+) -> Plan:
+    """Choose how to integrate a scene; the mesh is built and, if need be, the limit found.
 
     Args:
         scene: to be run.
@@ -34,62 +87,55 @@ def resolve(
             published setup.
         force_time_step: accept a step above the limit, to see it fail.
 
-    Returns:
-        `fiberweb.engines.base.Numerics`.
-
     Raises:
         ValueError: one sentence with the key, its value and what would be right; among others
             for a network of stubby sections if no engine is named.
     """
-    from fiberweb.engines import load
-    from fiberweb.engines.base import AUTHORS_STEP, Numerics
-    from fiberweb.engines.stability import largest_step
     from fiberweb.model.mesh import build
 
-    check(scene, accuracy, engine, elements_per_section, time_step)
+    _check(scene, accuracy, engine, elements_per_section, time_step)
     published = scene.setup == "published"
-    given = engine is not None
-    engine = engine or ("cosserat" if published else "kirchhoff")
-    if engine == "kirchhoff" and not given and stubby(scene):
+    chosen = engine or DEFAULT_ENGINE[scene.setup]
+    if engine is None and stubby(scene) and not load(chosen).MODELS_SHEAR:
+        other = next(name for name in ENGINES if load(name).MODELS_SHEAR)
         raise ValueError(
-            f"spacing = {scene.network.spacing:g} m: a section shorter than {STUBBIEST:g} "
-            f"diameters of {scene.diameter:g} m shears, which the kirchhoff engine leaves out; "
-            "take a longer one, or engine = 'cosserat'"
+            f"spacing = {scene.network.spacing:g} m: a section shorter than {MIN_SLENDERNESS:g} "
+            f"diameters of {scene.diameter:g} m shears, which the {chosen} engine leaves out; "
+            f"take a longer one, or engine = {other!r}"
         )
     if not published and elements_per_section is None:
         elements_per_section = ACCURACIES[accuracy or "standard"]
     mesh = build(scene, elements_per_section)
-    load(engine).refuse(mesh)
+    load(chosen).refuse(mesh)
     if published and time_step is None:
-        return Numerics(engine, elements_per_section, AUTHORS_STEP)
-    limit = largest_step(mesh, engine)
-    if time_step is None:
-        time_step = safety(scene) * limit
-    if time_step > limit and not force_time_step and not scene.filter_order:
+        return Plan(mesh, chosen, elements_per_section, STEP)
+    made = Plan(mesh, chosen, elements_per_section, time_step, accuracy)
+    step = made.numerics.time_step
+    if not (force_time_step or scene.filter_order) and step > made.limit:
         raise ValueError(
-            f"time_step = {time_step:.3g} s is above the stability limit of {limit:.3g} s of the "
-            f"{engine} engine on this mesh; take a smaller one or leave it out"
+            f"time_step = {step:.3g} s is above the stability limit of {made.limit:.3g} s of the "
+            f"{chosen} engine on this mesh; take a smaller one or leave it out"
         )
-    return Numerics(engine, elements_per_section, time_step)
+    return made
 
 
 def stubby(scene: Scene) -> bool:
     """Whether shear, and not bending alone, decides how the driven section moves."""
-    return scene.network.spacing < STUBBIEST * scene.diameter
+    return scene.network.spacing < MIN_SLENDERNESS * scene.diameter
 
 
 def safety(scene: Scene) -> float:
-    """Share of the linear limit that the automatic step takes.
+    """Share of the stability limit that the automatic step takes.
 
     A force or a tension that is no longer small beside EA can fling a fibre about and strain it,
     and then bow and stretch make it stiffer than the straight one that the limit is of.
     """
     strain = max(scene.force, scene.tension) / scene.axial_stiffness
-    return min([SAFETY, *(share for least, share in VIOLENT.items() if strain >= least)])
+    return min([SAFETY, *(share for least, share in SAFETY_BY_STRAIN.items() if strain >= least)])
 
 
-def check(scene: Scene, accuracy, engine, elements_per_section, time_step) -> None:
-    """Refuse what can be refused without a mesh; see `resolve`."""
+def _check(scene: Scene, accuracy, engine, elements_per_section, time_step) -> None:
+    """Refuse what can be refused without a mesh; see `plan`."""
     if scene.tension >= scene.axial_stiffness:
         raise ValueError(
             f"tension = {scene.tension:g} N: no fibre holds a pull of EA = "

@@ -7,12 +7,11 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
+from fiberweb.engines import load
 from fiberweb.engines.base import Numerics, Recording
 from fiberweb.model.drive import spline
 from fiberweb.model.mesh import Mesh
 from fiberweb.source import source_hash
-
-ENGINE_PACKAGES = {"elastica": ("pyelastica", "numba", "numpy")}
 
 
 def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset:
@@ -38,7 +37,7 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     # what twins differ by at first is less than single precision keeps
     moved = recording.displacement.astype(np.float64 if scene.disturbance else np.float32)
     unstable = recording.unstable_at is not None
-    packages = ENGINE_PACKAGES.get(numerics.engine, ("numba", "numpy"))
+    packages = load(numerics.engine).PACKAGES
     u = spline(scene.seed, scene.duration, scene.drive_rate)(scene.times)
     data = xr.Dataset(
         {

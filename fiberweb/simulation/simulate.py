@@ -1,11 +1,12 @@
-"""One call from a scene to its response."""
+"""From a scene, or from a plan of it, to its response."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fiberweb.engines import load
 from fiberweb.model.scene import Scene
-from fiberweb.simulation.plan import resolve
+from fiberweb.simulation.plan import Plan, plan
 
 if TYPE_CHECKING:
     import xarray
@@ -39,10 +40,21 @@ def simulate(
     Raises:
         ValueError: one sentence naming the argument, its value and what would be right.
     """
-    from fiberweb import engines
-    from fiberweb.model.mesh import build
-    from fiberweb.simulation.response import response
+    return run(
+        plan(
+            scene,
+            accuracy,
+            engine=engine,
+            elements_per_section=elements_per_section,
+            time_step=time_step,
+            force_time_step=force_time_step,
+        )
+    )
 
-    numerics = resolve(scene, accuracy, engine, elements_per_section, time_step, force_time_step)
-    mesh = build(scene, numerics.elements_per_section)
-    return response(mesh, numerics, engines.load(numerics.engine).integrate(mesh, numerics))
+
+def run(plan: Plan) -> xarray.Dataset:
+    """The response of a planned run; see `simulate`."""
+    from fiberweb.simulation.response import response  # with xarray, which a plan does not need
+
+    recording = load(plan.engine).integrate(plan.mesh, plan.numerics)
+    return response(plan.mesh, plan.numerics, recording)

@@ -24,9 +24,10 @@ from elastica import PositionVerlet
 
 from fiberweb import Scene, crosshatch, engines
 from fiberweb.engines import elastica
-from fiberweb.engines.base import AUTHORS_STEP, Numerics, steps_per_sample
+from fiberweb.engines.base import Numerics, steps_per_sample
+from fiberweb.model import authors
 from fiberweb.model.mesh import build
-from fiberweb.simulation.plan import ACCURACIES, resolve
+from fiberweb.simulation.plan import ACCURACIES, plan
 
 WINDOWS = 5
 OLD_STEPS = 300  # of PyElastica in a window
@@ -76,8 +77,8 @@ def meshes(scene: Scene) -> list[int | None]:
 
 def compare(scene: Scene, engine: str, elements: int | None) -> None:
     """PyElastica on the authors' mesh and step against ours on a mesh of ours."""
-    old = Numerics("elastica", None, AUTHORS_STEP)
-    new = resolve(scene, engine=engine, elements_per_section=elements)
+    old = Numerics("elastica", None, authors.STEP)
+    new = plan(scene, engine=engine, elements_per_section=elements).numerics
     old_mesh, new_mesh = build(scene), build(scene, new.elements_per_section)
     simulator, _, step, per_sample = elastica.assemble(old_mesh, old)
     stepper, now = PositionVerlet(), 0.0
@@ -110,7 +111,7 @@ def displacement(scene: Scene, engine: str, elements: int, step: float | None = 
     """Of every readout over the first second, shape (samples, readouts, 2), m."""
     short = replace(scene, duration=1.0)
     if step is None:
-        step = resolve(short, engine=engine, elements_per_section=elements).time_step
+        step = plan(short, engine=engine, elements_per_section=elements).numerics.time_step
     numerics = Numerics(engine, elements, step)
     return engines.load(engine).integrate(build(short, elements), numerics).displacement
 
@@ -118,7 +119,9 @@ def displacement(scene: Scene, engine: str, elements: int, step: float | None = 
 def authors_displacement(scene: Scene) -> np.ndarray:
     """The same on PyElastica's mesh with crossings on nodes: 10 mm is not a whole part of every
     section."""
-    return displacement(scene, "cosserat", round(scene.network.spacing / 10e-3), AUTHORS_STEP)
+    return displacement(
+        scene, "cosserat", round(scene.network.spacing / authors.ELEMENT), authors.STEP
+    )
 
 
 def error(a: np.ndarray, exact: np.ndarray) -> float:
@@ -140,7 +143,7 @@ def _row(scene, engine, mesh, steps, per_step, error, ratio) -> None:
 def kernel(setup: str, n: int) -> str:
     """ns an element and step of a whole run with the setup's own engine and mesh, median."""
     scene = Scene(crosshatch(n, length=0.5), setup, duration=2 * NEW_SECONDS / n)
-    numerics = resolve(scene)
+    numerics = plan(scene).numerics
     mesh, load = build(scene, numerics.elements_per_section), engines.load(numerics.engine)
     load.integrate(mesh, numerics)
     times = []

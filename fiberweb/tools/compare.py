@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from fiberweb import tables as files
 from fiberweb.scoring import tables
 from fiberweb.studies.calibration import tables as calibration
 from fiberweb.studies.chaos import tables as chaos
@@ -41,7 +42,7 @@ def read(path: str | Path) -> pd.DataFrame:
         ValueError: one sentence: no such file, or no such table.
     """
     try:
-        frame = tables.read(path)
+        frame = files.read(path)
     except (OSError, ValueError) as error:  # pandas' own errors about content are ValueErrors
         reason = getattr(error, "strerror", None) or "not a CSV table"
         raise ValueError(

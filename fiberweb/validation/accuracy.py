@@ -16,8 +16,9 @@ import numpy as np
 import pandas as pd
 
 from fiberweb.engines import load
-from fiberweb.engines.base import AUTHORS_STEP, Numerics, steps_per_sample
+from fiberweb.engines.base import Numerics, steps_per_sample
 from fiberweb.engines.stability import largest_step
+from fiberweb.model import authors
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.network import crosshatch
 from fiberweb.model.scene import Scene
@@ -31,8 +32,7 @@ FINEST = 32  # elements per section of the finest run
 TIMED = 0.4  # s of CPU in a timing window of a planar engine, at least
 REPEATS = 3  # windows; the fastest counts
 COMPARED = 20_000  # steps over which the planar Cosserat engine is held against PyElastica
-AUTHORS_ELEMENT = 10e-3  # m
-STIFF = 1e6  # N/m, the authors' crossing: stiffer than the fibres by far
+STIFF = authors.PHYSICS["crosshatch"]["crossing_stiffness"]  # N/m: far stiffer than the fibres
 
 COLUMNS = (
     "engine", "setup", "network", "elements_per_section", "time_step", "seconds_per_run",
@@ -161,15 +161,15 @@ def cases(n: int, length: float, buckling: float) -> list[Case]:
     listed += [Case("cosserat", elements=4, **about)]
     listed += [Case("cosserat", elements=8, **about)] if n < 8 else []
     spatial = [4, 8] if n < 8 else [4]
-    listed += [Case("elastica", elements=e, step=AUTHORS_STEP, **about) for e in spatial]
-    listed += [Case(e, elements=None, step=AUTHORS_STEP, **about) for e in ("cosserat", "elastica")]
+    listed += [Case("elastica", elements=e, step=authors.STEP, **about) for e in spatial]
+    listed += [Case(e, elements=None, step=authors.STEP, **about) for e in ("cosserat", "elastica")]
     return listed
 
 
 def planar(case: Case) -> Case:
     """The case whose errors stand for one: the cosserat engine for PyElastica, and for the
     authors' mesh the nearest with crossings on nodes, whose places 10 mm elements round."""
-    elements = case.elements or round(case.mesh(1.0).scene.network.spacing / AUTHORS_ELEMENT)
+    elements = case.elements or round(case.mesh(1.0).scene.network.spacing / authors.ELEMENT)
     return replace(case, engine=_planar(case.engine), elements=elements)
 
 
@@ -238,9 +238,9 @@ def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
 def _published(n: int, length: float, window: int) -> list[tuple]:
     """The published setup, which PyElastica defines: its error is zero, and that of the planar
     engine is how far it departs within `COMPARED` steps."""
-    about = {"elements": None, "length": length, "setup": "published", "step": AUTHORS_STEP}
+    about = {"elements": None, "length": length, "setup": "published", "step": authors.STEP}
     pair = [Case(engine, n, **about) for engine in ("cosserat", "elastica")]
-    compared = COMPARED * AUTHORS_STEP
+    compared = COMPARED * authors.STEP
     planar, spatial = (case.trajectory(compared) for case in pair)
     errors = [(difference(planar, spatial), np.nan, np.nan, "elastica"), (0.0, 0.0, 0.0, "itself")]
     costs = [case.cost(window) for case in pair]

@@ -16,6 +16,7 @@ import pandas as pd
 from fiberweb.engines import load
 from fiberweb.engines.base import Numerics, Recording
 from fiberweb.engines.stability import largest_step
+from fiberweb.model import authors
 from fiberweb.model.drive import spline
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.network import crosshatch
@@ -32,7 +33,7 @@ LOADED = 10  # times as many steps for a run under the point's own force
 FURTHEST = 20.0  # and here
 RESOLUTION = {"elastica": 1e-3}  # of the bisection, relative; 1e-4 for the planar engines
 SLOWER = {"elastica": 3}  # times fewer steps for an engine a hundred times slower
-STIFF = 1e6  # N/m, the authors' crossing
+STIFF = authors.PHYSICS["crosshatch"]["crossing_stiffness"]  # N/m
 STOUT = 10.0  # spacing over diameter of the stoutest corners: the paper's own smallest
 FORCE_LIMIT, TENSION_LIMIT = 0.1, 0.15  # of EA, at the corners: beyond, strains are not small
 DRIFT_SAMPLES, DRIFT_ELEMENTS = 1000, 2

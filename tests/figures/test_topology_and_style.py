@@ -23,7 +23,7 @@ def networks():
 
 @pytest.fixture(scope="module")
 def data():
-    """(table, curves, floors, traces) with a 10x10 crosshatch that was unstable."""
+    """(table, curves, baselines, traces) with a 10x10 crosshatch that was unstable."""
     rows, curves = [], []
     order, lag = np.arange(1.0, 11.0), np.arange(0, 251, 10) / 250
     for setup, kind, n in networks():
@@ -38,14 +38,14 @@ def data():
         for target, places, values in (("order", order, c_order), ("lag", lag, c_lag)):
             points = zip(places, values, strict=True)
             curves += [key | {"target": target, "at": at, "c": c} for at, c in points]
-    floors = pd.DataFrame(
+    baselines = pd.DataFrame(
         {
             "readout": ["u", "derivatives", "powers"],
             "c_nl": [0.14, 0.14, 0.41],
             "c_m": [0.09, 0.28, 0.09],
         }
     )
-    return pd.DataFrame(rows), pd.DataFrame(curves), floors, example_traces()
+    return pd.DataFrame(rows), pd.DataFrame(curves), baselines, example_traces()
 
 
 def example_traces():
@@ -129,11 +129,11 @@ def test_panels_are_lettered_in_order_and_name_what_they_show(drawn):
 
 
 def test_without_traces_the_last_panel_is_left_out(data, drawn, tmp_path):
-    table, curves, floors, traces = data
+    table, curves, baselines, traces = data
     unknown = traces.assign(prediction=traces["prediction"] * np.nan)
     for number, nothing in enumerate((None, unknown)):
         path = tmp_path / f"{number}.png"
-        figure = topology.draw(table, curves, floors, nothing, "described", path)
+        figure = topology.draw(table, curves, baselines, nothing, "described", path)
         assert "Example computations" not in titles(figure)
         assert png_size(path)[1] < png_size(drawn[1])[1]
 
@@ -148,18 +148,18 @@ def test_a_study_of_few_networks_is_drawn(data, tmp_path, kind):
 
 
 def test_a_study_in_which_nothing_was_stable_is_drawn(data, tmp_path):
-    table, curves, floors, _ = data
+    table, curves, baselines, _ = data
     table, curves = (frame[frame["n"] == 10] for frame in (table, curves))
     table, curves = (frame[frame["topology"] == "crosshatch"] for frame in (table, curves))
-    figure = topology.draw(table, curves, floors, None, "described", tmp_path / "x.png")
+    figure = topology.draw(table, curves, baselines, None, "described", tmp_path / "x.png")
     assert len(figure.findobj(lambda artist: artist.get_gid() == "unstable")) == 2
 
 
 def test_a_setup_without_runs_is_refused(data, tmp_path):
-    table, curves, floors, _ = data
+    table, curves, baselines, _ = data
     table = table[table["setup"] == "described"]
     with pytest.raises(ValueError, match="no run of the published setup"):
-        topology.draw(table, curves, floors, None, "published", tmp_path / "none.png")
+        topology.draw(table, curves, baselines, None, "published", tmp_path / "none.png")
 
 
 def test_a_dot_in_the_name_is_not_a_suffix(tmp_path):

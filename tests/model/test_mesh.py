@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fiberweb.model.mesh import ELEMENT_FLOOR, build
+from fiberweb.model.lines import ELEMENT_FLOOR
+from fiberweb.model.mesh import build
 from fiberweb.model.network import crosshatch, polygon
 from fiberweb.model.scene import Scene
 

@@ -12,42 +12,11 @@ from sklearn.linear_model import Ridge
 from sklearn.model_selection import train_test_split
 from sklearn.preprocessing import StandardScaler
 
-from fiberweb.model.drive import spline
 from fiberweb.scoring import capacity
 from fiberweb.scoring import regression as ridge
+from tests.scoring.reservoirs import RATE, drive, reservoir
 
-RATE = 50.0
 LAGS = np.arange(51)
-
-
-def drive(seconds, rate=RATE):
-    return spline(duration=seconds)(np.arange(round(seconds * rate)) / rate)
-
-
-def reservoir(u, signals, rng, leak=0.1):
-    """A leaky random network: something with memory and nonlinearity, in metres."""
-    x = np.zeros((len(u), signals))
-    coupling = rng.standard_normal((signals, signals)) / np.sqrt(signals)
-    entry, bias = rng.standard_normal((2, signals))
-    for t in range(1, len(u)):
-        pull = np.tanh(coupling @ x[t - 1] + entry * u[t] + bias)
-        x[t] = (1 - leak) * x[t - 1] + leak * pull
-    return 1e-3 * x
-
-
-@pytest.fixture(scope="module")
-def well_posed():
-    u = drive(41.0)[:-7]  # no multiple of 4: the split has to round
-    return u, reservoir(u, 30, np.random.default_rng(3))
-
-
-@pytest.fixture(scope="module")
-def collinear(well_posed):
-    """Sixty signals of rank ten, but for noise of one in a million: like a web's readouts."""
-    u, x = well_posed
-    rng = np.random.default_rng(4)
-    mixed = x[:, :10] @ rng.standard_normal((10, 60))
-    return u, mixed * (1 + 1e-6 * rng.standard_normal(mixed.shape)) + 0.02
 
 
 # --- the oracle: both scorings written out with sklearn ---------------------------------------
@@ -164,7 +133,7 @@ def test_legendre_polynomials_as_readouts_are_nonlinear_capacity(scoring):
     "name, c_nl, c_m",
     [("u", 0.141, 0.094), ("derivatives", 0.140, 0.280), ("powers", 0.410, 0.094)],
 )
-def test_floors(name, c_nl, c_m):
+def test_input_baselines(name, c_nl, c_m):
     """The input itself, at the paper's duration and rate; numbers of a separate prototype."""
     u = drive(100.0, 250.0)
     x = capacity.trivial_readouts(u, 250.0)[name]
@@ -181,17 +150,6 @@ def test_trivial_readouts_differentiate_a_sine():
     np.testing.assert_allclose(x["derivatives"][5:-5], truth[5:-5], atol=5e-3)
     np.testing.assert_allclose(x["powers"], np.sin(t)[:, None] ** [1, 2, 3])
     assert x["u"].shape == (2000, 1)
-
-
-def test_targets():
-    u = ridge.scale_input(np.array([3.0, 5.0, 4.0, 7.0]))
-    np.testing.assert_allclose(u, [-1, 0, -0.5, 1])
-    np.testing.assert_allclose(
-        ridge.legendre_targets(u, (1, 2)), np.column_stack([u, (3 * u**2 - 1) / 2])
-    )
-    np.testing.assert_array_equal(
-        ridge.recall_targets(u, (0, 2)), [[-1, np.nan], [0, np.nan], [-0.5, -1], [1, 0]]
-    )
 
 
 # --- clipping, degenerate readouts, invariance ------------------------------------------------
@@ -278,54 +236,6 @@ def test_traces_have_the_capacities_that_were_scored(scoring, well_posed):
     for column, order in enumerate((4, 7)):
         c = c_of(traces.nonlinear_target[:, column], traces.nonlinear[:, column])
         assert c == pytest.approx(scored.nonlinear_raw[order - 1], abs=1e-9)
-
-
-# --- what a user can get wrong ----------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "options, sentence",
-    [
-        ({"scoring": "papers"}, "scoring = 'papers' is unknown; use 'clean' or 'published'"),
-        ({"alpha": 0.0}, "alpha = 0.0 is not usable; give a finite number above 0"),
-        ({"alpha": "small"}, "alpha = 'small' is not usable"),
-        ({"alpha": True}, "alpha = True is not usable"),
-        ({"horizon": -1.0}, "horizon = -1.0 is not usable"),
-        ({"horizon": 0.001}, "horizon = 0.001 s is shorter than a frame; give at least 0.02 s"),
-        ({"split": 1.0}, "split = 1.0 is not usable"),
-        ({"skip": -1}, "skip = -1 is negative"),
-        ({"orders": 0}, "orders = 0 holds no Legendre polynomial"),
-        ({"shuffle": True}, "shuffle = True needs scoring = 'published'"),
-        ({"horizon": 30.0}, "duration = 40.86 s is too short .* record at least 60 s"),
-        ({"skip": 2000}, "duration = 40.86 s is too short .* record at least 42 s"),
-    ],
-)
-def test_bad_options_are_named(options, sentence, well_posed):
-    with pytest.raises(ValueError, match=sentence):
-        capacity.score_arrays(*well_posed, RATE, **options)
-
-
-def test_bad_arrays_are_named(well_posed):
-    u, x = well_posed
-    with pytest.raises(ValueError, match=r"u has shape \(2042,\) and readouts \(2043, 30\)"):
-        capacity.score_arrays(u[1:], x, RATE)
-    with pytest.raises(ValueError, match="p at least 1"):
-        capacity.score_arrays(u, x[:, :0], RATE)
-    with pytest.raises(ValueError, match="sample_rate = 0 is not usable"):
-        capacity.score_arrays(u, x, 0)
-    with pytest.raises(ValueError, match="u = 2 at every frame"):
-        capacity.score_arrays(np.full(len(u), 2.0), x, RATE)
-    with pytest.raises(ValueError, match="u holds values that are not finite"):
-        capacity.score_arrays(np.where(u == u[5], np.nan, u), x, RATE)
-    with pytest.raises(ValueError, match=r"lag = 1\.5 s is outside 0 to horizon = 1 s"):
-        capacity.predict(u, x, RATE, lags=(1.5,))
-    with pytest.raises(ValueError, match="alpha = 1e-15 is lost in the round-off"):
-        capacity.score_arrays(u, np.repeat(x[:, :3], 4, axis=1), RATE, alpha=1e-15)
-    x = x.copy()
-    x[17, 3] = np.inf
-    with pytest.raises(ValueError, match=r"readouts\[17, 3\] = inf is not finite; an unstable run"):
-        capacity.score_arrays(u, x, RATE)
-    capacity.score_arrays(u, x, RATE, scoring="published", skip=18)
 
 
 # --- datasets ---------------------------------------------------------------------------------

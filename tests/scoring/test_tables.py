@@ -1,7 +1,6 @@
-"""Tables hold what the capacity files say, in one order and with the same bytes every time."""
+"""Tables hold what the capacity files say."""
 
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 
@@ -103,48 +102,19 @@ def test_curves_hold_every_order_and_lag(study):
 
 
 @pytest.mark.parametrize(("setup", "scoring"), [("described", "clean"), ("published", "published")])
-def test_floors_score_the_input_alone_by_the_scoring_of_the_setup(tmp_path, setup, scoring):
+def test_input_baselines_score_the_input_alone_by_the_scoring_of_the_setup(
+    tmp_path, setup, scoring
+):
     scene = Scene(crosshatch(2, length=0.5), setup=setup, duration=8.0, sample_rate=RATE)
     data = response(scene, status="unstable")  # the input is whole all the same
     dataset.save(data, tmp_path / "response.nc")
-    floors = tables.floors(tmp_path / "response.nc", alpha=0.1).set_index("readout")
-    assert list(floors.columns) == ["c_nl", "c_m"]
+    baselines = tables.input_baselines(tmp_path / "response.nc", alpha=0.1).set_index("readout")
+    assert list(baselines.columns) == ["c_nl", "c_m"]
     u = data["input"].values
     for name, readouts in capacity.trivial_readouts(u, RATE).items():
         expected = capacity.score_arrays(u, readouts, RATE, scoring=scoring, alpha=0.1)
-        assert floors.loc[name, "c_nl"] == expected.c_nl
-        assert floors.loc[name, "c_m"] == expected.c_m
-
-
-def test_a_table_has_the_same_bytes_whatever_the_order_of_its_rows(study, tmp_path):
-    paths = [path for path, _ in study]
-    tables.write(tables.rows(paths), tmp_path / "a.csv")
-    tables.write(tables.rows(paths).iloc[::-1], tmp_path / "b.csv")
-    content = (tmp_path / "a.csv").read_bytes()
-    assert content == (tmp_path / "b.csv").read_bytes()
-    assert b"\r" not in content
-    assert {path.name for path in tmp_path.iterdir()} == {"a.csv", "b.csv"}  # nothing partial
-
-
-def test_read_returns_what_was_written(study, tmp_path):
-    table = tables.rows([path for path, _ in study])
-    tables.write(table, tmp_path / "new" / "topology.csv")
-    again = tables.read(tmp_path / "new" / "topology.csv")
-    pd.testing.assert_frame_equal(again, table, rtol=1e-9, check_dtype=False)
-
-
-def test_merge_joins_tables_of_one_kind_only(study, tmp_path):
-    paths = [path for path, _ in study]
-    tables.write(tables.rows(paths[:1]), tmp_path / "published.csv")
-    tables.write(tables.rows(paths[1:]), tmp_path / "described.csv")
-    merged = tables.merge([tmp_path / "published.csv", tmp_path / "described.csv"])
-    whole = tables.rows(paths)
-    pd.testing.assert_frame_equal(merged, whole, rtol=1e-9, check_dtype=False)
-    tables.write(tables.curves(paths[:1]), tmp_path / "curves.csv")
-    with pytest.raises(ValueError, match=r"curves.csv has the columns .* merge tables of one kind"):
-        tables.merge([tmp_path / "described.csv", tmp_path / "curves.csv"])
-    with pytest.raises(ValueError, match="no table to merge"):
-        tables.merge([])
+        assert baselines.loc[name, "c_nl"] == expected.c_nl
+        assert baselines.loc[name, "c_m"] == expected.c_m
 
 
 def test_study_has_a_row_for_each_run_and_choice(study):
@@ -163,42 +133,3 @@ def test_study_has_a_row_for_each_run_and_choice(study):
     assert (row["engine"], row["elements_per_section"], row["time_step_s"]) == ("none", 4, 1e-5)
     with pytest.raises(ValueError):
         tables.study([path], ["eq3", "best_c_m"])
-
-
-def made_up_ridge():
-    """Two spacings over three forces: buckled and unstable runs would be the best by far."""
-    rows = [
-        (0.04, 0.5, 0.3, 0.60, 0.20, "ok"),
-        (0.04, 0.8, 0.6, 0.70, 0.15, "ok"),
-        (0.04, 2.0, 1.1, 0.95, 0.90, "ok"),
-        (0.08, 0.1, 0.2, 0.50, 0.30, "ok"),
-        (0.08, 0.2, 0.5, np.nan, np.nan, "unstable"),
-        (0.12, 0.1, 0.5, np.nan, np.nan, "unstable"),
-        (0.12, 0.2, 1.0, 0.70, 0.40, "ok"),
-    ]
-    columns = ["spacing_m", "force_N", "buckling_number", "c_nl", "c_m", "status"]
-    return pd.DataFrame(rows, columns=columns).assign(setup="described")
-
-
-def test_the_best_force_is_below_buckling_and_stable():
-    best = tables.best_unbuckled(made_up_ridge())
-    assert list(best.columns) == list(tables.BEST_COLUMNS)
-    assert best[["spacing_m", "choice", "force_N", "capacity"]].to_numpy().tolist() == [
-        [0.04, "best_c_m", 0.5, 0.20],
-        [0.04, "best_c_nl", 0.8, 0.70],
-        [0.08, "best_c_nl", 0.1, 0.50],
-        [0.08, "best_c_m", 0.1, 0.30],
-    ]
-    buckled = made_up_ridge().assign(buckling_number=2.0)
-    assert list(tables.best_unbuckled(buckled).columns) == list(tables.BEST_COLUMNS)
-    assert tables.best_unbuckled(buckled).empty
-
-
-def test_the_best_forces_come_back_from_their_file(tmp_path):
-    tables.write(tables.best_unbuckled(made_up_ridge()), tmp_path / "best.csv")
-    assert tables.read_best(tmp_path / "best.csv") == {
-        ("best_c_m", 0.04): 0.5,
-        ("best_c_nl", 0.04): 0.8,
-        ("best_c_nl", 0.08): 0.1,
-        ("best_c_m", 0.08): 0.1,
-    }

@@ -12,6 +12,7 @@ from fiberweb import Scene, crosshatch
 from fiberweb.scoring import tables
 from fiberweb.simulation import dataset
 from fiberweb.studies.calibration import tables as calibration
+from fiberweb.tables import write
 
 EXACT = {"c_p4": 0.999, "c_p7": 0.896, "recall_200ms": 0.997, "recall_400ms": 0.713}
 
@@ -113,7 +114,7 @@ def run_main(monkeypatch, path):
 
 
 def test_the_command_prints_the_verdict(monkeypatch, tmp_path, capsys):
-    tables.write(grid(**{"p70_3_2.5": 2.0}, p40_3_10=3.0), tmp_path / "calibration.csv")
+    write(grid(**{"p70_3_2.5": 2.0}, p40_3_10=3.0), tmp_path / "calibration.csv")
     run_main(monkeypatch, tmp_path / "calibration.csv")
     assert "are the grid's best" in capsys.readouterr().out
 
@@ -126,7 +127,7 @@ def test_the_command_prints_the_verdict(monkeypatch, tmp_path, capsys):
     ],
 )
 def test_the_command_fails_with_one_sentence(monkeypatch, tmp_path, frame, words):
-    tables.write(frame, tmp_path / "calibration.csv")
+    write(frame, tmp_path / "calibration.csv")
     with pytest.raises(SystemExit, match=words) as stopped:
         run_main(monkeypatch, tmp_path / "calibration.csv")
     assert "\n" not in stopped.value.code  # text: Python prints it and exits with 1

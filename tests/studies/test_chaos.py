@@ -192,8 +192,8 @@ def test_the_figure_marks_unstable_pairs_in_every_panel_over_b(tmp_path):
     apart = pd.DataFrame({"buckling_number": np.repeat(numbers, 3), "setup": "described"}).assign(
         time_s=np.tile([0.0, 1.0, 2.0], 4), separation_m=np.tile([1e-9, 1e-10, 1e-11], 4)
     )
-    floors = pd.DataFrame({"readout": ["u"], "c_nl": [0.14], "c_m": [0.09]})
-    given = {"chaos_rates": table, "chaos_separations": apart, "chaos_floors": floors}
+    baselines = pd.DataFrame({"readout": ["u"], "c_nl": [0.14], "c_m": [0.09]})
+    given = {"chaos_rates": table, "chaos_separations": apart, "chaos_baselines": baselines}
     figure = plotting.draw(given, "described", tmp_path / "chaos.png")
     assert (tmp_path / "chaos.pdf").exists()
     assert_legible(figure)

@@ -5,7 +5,8 @@ import pandas as pd
 import pytest
 
 from fiberweb.claims import judge as claims
-from fiberweb.model.buckling import authors_reference_force, critical_force
+from fiberweb.model.authors import reference_force as authors_reference_force
+from fiberweb.model.buckling import critical_force
 from fiberweb.studies.ridge.onset import onsets
 
 SPACINGS = [0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.14]

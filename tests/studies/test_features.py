@@ -12,10 +12,11 @@ from fiberweb.scoring import capacity, groups, tables
 from fiberweb.simulation import dataset
 from fiberweb.studies.features import figure as plotting
 from fiberweb.studies.features import tables as features
+from fiberweb.tables import read, write
 from tests.figures.legible import assert_legible
 
 RATE = 25.0
-FLOORS = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.14, 0.41], "c_m": [0.09, 0.28]})
+BASELINES = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.14, 0.41], "c_m": [0.09, 0.28]})
 SCORES = {  # C_nl, C_m of a network that agrees with every claim
     "all": (0.80, 0.50), "crossing_x": (0.55, 0.15), "crossing_y": (0.55, 0.20),
     "horizontal_midpoint_x": (0.60, 0.20), "horizontal_midpoint_y": (0.70, 0.45),
@@ -60,12 +61,12 @@ def study(tmp_path_factory):
     made = {
         "features": features.group_table(*zip(*paths), ["grid"] * 3, 0.1, 0.2),
         "features_greedy": features.greedy_table(paths[1][1], 0.1, 0.95),
-        "features_floors": tables.floors(paths[1][1], 0.1),
+        "features_baselines": tables.input_baselines(paths[1][1], 0.1),
         "unstable": features.greedy_table(paths[2][1], 0.1, 0.95),
     }
     for name, frame in made.items():
-        tables.write(frame, folder / f"{name}.csv")
-    return {name: tables.read(folder / f"{name}.csv") for name in made}, runs
+        write(frame, folder / f"{name}.csv")
+    return {name: read(folder / f"{name}.csv") for name in made}, runs
 
 
 def test_one_row_for_each_run_group_and_split(study):
@@ -121,7 +122,7 @@ def test_greedy_rows_name_their_signals_and_end_with_all(study):
 
 
 def test_the_figure_marks_unstable_runs_and_shows_the_share(study, tmp_path):
-    made = study[0] | {"features_floors": FLOORS}
+    made = study[0] | {"features_baselines": BASELINES}
     figure = plotting.draw(made, "described", tmp_path / "features.png")
     assert (tmp_path / "features.png").stat().st_size > 50_000
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")

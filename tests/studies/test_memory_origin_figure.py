@@ -16,7 +16,7 @@ from fiberweb.studies.memory_origin import figure as memory_origin
 from fiberweb.studies.points import points as studies
 from tests.figures.legible import assert_legible
 
-FLOORS = pd.DataFrame(
+BASELINES = pd.DataFrame(
     {
         "readout": ["u", "derivatives", "powers"],
         "c_nl": [0.14, 0.14, 0.41],
@@ -51,7 +51,7 @@ def origin():
         rows += [filtered(n, 0, elements), filtered(n, 6, elements, c_m=0.6)]
     rows += [filtered(4, 6, 5), filtered(4, 6, 10, 2.5e-6, c_m=0.7)]
     rows += [filtered(4, 6, 20, status="unstable", c_m=np.nan, c_nl=np.nan)]
-    return {"memory_origin": pd.DataFrame(rows), "memory_origin_floors": FLOORS}
+    return {"memory_origin": pd.DataFrame(rows), "memory_origin_baselines": BASELINES}
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def points():
     rows[-1]["status"] = "unstable"
     table = pd.DataFrame(rows)
     return {
-        "calibration": table, "calibration_check": grid.check(table), "ridge_floors": FLOORS
+        "calibration": table, "calibration_check": grid.check(table), "ridge_baselines": BASELINES
     }  # fmt: skip
 
 
@@ -134,7 +134,7 @@ def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
         rows.append(
             run(made.network.n, *crossings, made.filter_order, engine, elements, step, **at)
         )
-    tables = {"memory_origin": pd.DataFrame(rows), "memory_origin_floors": FLOORS}
+    tables = {"memory_origin": pd.DataFrame(rows), "memory_origin_baselines": BASELINES}
     figure = memory_origin.draw(tables, setup, "unsaved")
     nonlinear, memory = figure.findobj(
         lambda artist: isinstance(artist, Axes) and "Fibres" in artist.get_xlabel()
@@ -157,8 +157,8 @@ def test_every_capacity_of_panel_b_has_its_standard_error_as_a_bar(drawn):
             assert all(np.ptp(bar[:, 1]) == pytest.approx(2 * size) for bar in bars)
 
 
-def test_floors_of_the_calibration_may_be_missing(points, unsaved):
-    tables = {name: table for name, table in points.items() if name != "ridge_floors"}
+def test_baselines_of_the_calibration_may_be_missing(points, unsaved):
+    tables = {name: table for name, table in points.items() if name != "ridge_baselines"}
     figure = calibration.draw(tables, "described", "unsaved")
     assert "readouts made of the input alone" not in said(figure)
 

@@ -12,6 +12,7 @@ from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 from fiberweb.studies.narma import figure
 from fiberweb.studies.narma import task as narma
+from fiberweb.tables import read, write
 from tests.figures.legible import assert_legible
 
 RATE = 50.0
@@ -215,6 +216,6 @@ def test_figure_of_one_unstable_run_is_drawn(study, tmp_path):
 
 
 def test_table_reads_back(study, tmp_path):
-    tables.write(study[1], tmp_path / "narma.csv")
-    back = tables.read(tmp_path / "narma.csv")
+    write(study[1], tmp_path / "narma.csv")
+    back = read(tmp_path / "narma.csv")
     pd.testing.assert_series_equal(back["rmse"], study[1]["rmse"], rtol=1e-9)

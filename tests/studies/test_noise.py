@@ -108,8 +108,8 @@ def test_an_unstable_run_keeps_its_rows_without_numbers(table):
 
 def test_the_figure_shows_both_totals_and_refuses_a_setup_without_runs(table, tmp_path):
     table = table.assign(n=np.where(table["status"] == "ok", 4, 8))
-    floors = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.1, 0.4], "c_m": [0.1, 0.1]})
-    given = {"noise": table, "noise_floors": floors}
+    baselines = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.1, 0.4], "c_m": [0.1, 0.1]})
+    given = {"noise": table, "noise_baselines": baselines}
     figure = plotting.draw(given, "described", tmp_path / "noise.png")
     assert (tmp_path / "noise.png").exists() and (tmp_path / "noise.pdf").exists()
     assert len(figure.axes) == 2

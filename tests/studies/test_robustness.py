@@ -68,11 +68,11 @@ def test_the_figure_gives_the_spread_of_seeds_beside_their_errors(alphas, tmp_pa
     ).assign(c_nl_se=0.013, c_m_se=0.017)
     lost = seeds.assign(n=8, status=["ok", "ok", "unstable"])
     lost.loc[lost["status"] == "unstable", ["c_nl", "c_m", "c_nl_se", "c_m_se"]] = np.nan
-    floors = pd.DataFrame({"readout": ["u"], "c_nl": [0.14], "c_m": [0.09]})
+    baselines = pd.DataFrame({"readout": ["u"], "c_nl": [0.14], "c_m": [0.09]})
     given = {
         "robustness": pd.concat([seeds, lost]),
         "robustness_alpha": alphas.assign(n=4),
-        "robustness_floors": floors,
+        "robustness_baselines": baselines,
     }
     figure = plotting.draw(given, "described", tmp_path / "robustness.png")
     said = " ".join(text.get_text() for ax in figure.axes for text in ax.texts)

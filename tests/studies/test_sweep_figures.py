@@ -9,8 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from fiberweb.claims import judge as claims
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 from fiberweb.model.buckling import critical_force
 from fiberweb.studies.pretension import figure as pretension
 from fiberweb.studies.ridge import figure as ridge
@@ -18,7 +17,7 @@ from fiberweb.studies.ridge.onset import onsets
 from fiberweb.studies.size import figure as size
 from tests.figures.legible import assert_legible
 
-FLOORS = pd.DataFrame(
+BASELINES = pd.DataFrame(
     {
         "readout": ["u", "derivatives", "powers"],
         "c_nl": [0.14, 0.14, 0.41],
@@ -48,7 +47,7 @@ def ridge_tables(spacings=SPACINGS, forces=FORCES, **columns):
             {"spacing_m": spacing, "force_N": force, "buckling_number": b, "c_nl": c_nl, "c_m": c_m}
         )
     table = finish(rows, **columns)
-    return {"ridge": table, "ridge_onset": onsets(table), "ridge_floors": FLOORS}
+    return {"ridge": table, "ridge_onset": onsets(table), "ridge_baselines": BASELINES}
 
 
 def size_tables(sizes=(2, 4, 6), **columns):
@@ -57,14 +56,14 @@ def size_tables(sizes=(2, 4, 6), **columns):
         for choice, spacing, n in itertools.product(("best_c_nl", "best_c_m"), SPACINGS, sizes)
     ]
     table = finish(rows, time_step_s=5e-6, **columns).assign(n=[row["n"] for row in rows])
-    return {"size": table, "ridge_floors": FLOORS}
+    return {"size": table, "ridge_baselines": BASELINES}
 
 
 def published_size():
     """N = 2 at two steps, of which the longer was unstable once."""
     longer = size_tables((2,), setup="published")["size"]
     shorter = longer.assign(time_step_s=2.5e-6, status="ok").fillna({"c_nl": 0.5, "c_m": 0.123})
-    return {"size": pd.concat([longer, shorter], ignore_index=True), "ridge_floors": FLOORS}
+    return {"size": pd.concat([longer, shorter], ignore_index=True), "ridge_baselines": BASELINES}
 
 
 def pretension_tables(tensions=(0.01, 0.1, 0.5, 1.0, 2.0, 5.0)):
@@ -72,7 +71,7 @@ def pretension_tables(tensions=(0.01, 0.1, 0.5, 1.0, 2.0, 5.0)):
         {"spacing_m": spacing, "tension_N": tension, "c_nl": 0.7 - 0.05 * tension, "c_m": 0.2}
         for spacing, tension in itertools.product(SPACINGS[3:9], tensions)
     ]
-    return {"pretension": finish(rows), "ridge_floors": FLOORS}
+    return {"pretension": finish(rows), "ridge_baselines": BASELINES}
 
 
 CASES = {
@@ -112,7 +111,7 @@ def test_both_files_are_written_in_double_width(drawn):
     assert rf"{'published' if 'published' in path.name else 'described'} setup" in said(figure)
 
 
-def test_every_figure_shows_floors_and_unstable_runs(drawn):
+def test_every_figure_shows_baselines_and_unstable_runs(drawn):
     figure, _ = drawn
     assert "readouts made of the input alone" in said(figure)
     assert "unstable run" in said(figure)
@@ -155,7 +154,7 @@ def test_every_capacity_has_its_standard_error_as_a_bar(unsaved, name):
     stable = tables[name].dropna(subset=["c_nl", "c_m"])
     for column in ("c_nl", "c_m"):
         expected = [(c - e, c + e) for c, e in stable[[column, f"{column}_se"]].to_numpy()]
-        panels = [ax for ax in figure.axes if ax.get_ylabel() == sweep.TOTALS[column]]
+        panels = [ax for ax in figure.axes if ax.get_ylabel() == plots.TOTALS[column]]
         shown = [
             tuple(bar[:, 1].round(9))
             for ax in panels for container in ax.containers
@@ -165,15 +164,15 @@ def test_every_capacity_has_its_standard_error_as_a_bar(unsaved, name):
         assert len(shown) >= len(stable) // 2  # the size's are of one choice of the force
 
 
-def test_floors_that_nearly_agree_share_one_label():
-    labels = sweep.floor_labels(FLOORS, "c_nl", 0.05)
+def test_baselines_that_nearly_agree_share_one_label():
+    labels = plots.baseline_labels(BASELINES, "c_nl", 0.05)
     assert [value for value, _ in labels] == pytest.approx([0.14, 0.41])
     assert [words for _, words in labels] == ["$u$, $u\\,…\\,u'''$", "$u\\,…\\,u^3$"]
 
 
 def test_a_thinned_ridge_leaves_cells_out(unsaved):
     table = ridge_tables(setup="published")["ridge"].query("0.3 < buckling_number < 4")
-    tables = {"ridge": table, "ridge_onset": onsets(table), "ridge_floors": FLOORS}
+    tables = {"ridge": table, "ridge_onset": onsets(table), "ridge_baselines": BASELINES}
     figure = ridge.draw(tables, "published", "unsaved")
     assert "not run" in said(figure)
 
@@ -206,7 +205,7 @@ def test_the_published_size_shows_what_the_shorter_step_gives(unsaved):
     marks = [mark for mark in artists(memory, "unstable") if len(mark.get_xdata())]
     assert [list(mark.get_xdata()) for mark in marks] == [[150.0]]
     both = pd.concat([published_size()["size"], size_tables(setup="published")["size"]])
-    tables = {"size": both, "ridge_floors": FLOORS}
+    tables = {"size": both, "ridge_baselines": BASELINES}
     assert len(size.draw(tables, "published", "unsaved").axes) == 5  # and a key
 
 

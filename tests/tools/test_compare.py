@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from fiberweb.scoring import tables
+from fiberweb.tables import write
 from fiberweb.tools import compare
 
 OLD = [
@@ -32,7 +33,7 @@ def changed(at, **values):
 def code(folder, old, new, *options):
     """Exit code of the command."""
     for name, frame in (("old", old), ("new", new)):
-        tables.write(frame, folder / f"{name}.csv")
+        write(frame, folder / f"{name}.csv")
     return compare.main([str(folder / "old.csv"), str(folder / "new.csv"), *options])
 
 
@@ -114,13 +115,13 @@ def test_outcomes_of_every_study_identify_nothing():
         (lambda path: path.write_text("n,c_nl\n2,1\n"), "new.csv has no column 'c_m' of numbers"),
         (lambda path: path.write_text("n,c_nl,c_m\n2,x,1\n"), "no column 'c_nl' of numbers"),
         (lambda path: path.write_text("n,c_nl,c_m\n2,1,1\n"), "the column 'force_N' is in one"),
-        (lambda path: tables.write(table([(9, 1.0, 1.0, 1.0, "ok")]), path), "no row of one table"),
+        (lambda path: write(table([(9, 1.0, 1.0, 1.0, "ok")]), path), "no row of one table"),
     ],
     ids=["no file", "empty", "no column", "no number", "another study", "another config"],
 )
 def test_bad_tables_are_one_sentence(tmp_path, capsys, change, sentence):
     for name in ("old", "new"):
-        tables.write(table(OLD), tmp_path / f"{name}.csv")
+        write(table(OLD), tmp_path / f"{name}.csv")
     change(tmp_path / "new.csv")
     assert compare.main([str(tmp_path / "old.csv"), str(tmp_path / "new.csv")]) == 2
     printed = capsys.readouterr()

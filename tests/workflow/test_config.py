@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 from fiberweb.config import HORIZON, NumericsSection, check_folders, load
+from fiberweb.engines import ENGINES
 from fiberweb.runs import SETUPS, STUDIES, Run, check, example, run_table, runs
 from fiberweb.scoring import capacity
-from fiberweb.simulation.plan import ACCURACIES, ENGINES
+from fiberweb.simulation.plan import ACCURACIES
 from fiberweb.studies.points import CHOICES
 from fiberweb.tools import schema
 

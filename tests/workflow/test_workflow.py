@@ -16,8 +16,8 @@ import pytest
 
 from fiberweb import config
 from fiberweb.runs import STUDIES, runs
-from fiberweb.scoring.tables import best_unbuckled, read_best
 from fiberweb.simulation import dataset
+from fiberweb.studies.ridge.best import best_unbuckled, read_best
 
 ROOT = Path(__file__).parents[2]
 COPIED = ("Snakefile", "config", "envs", "fiberweb", "profiles", "workflow")
@@ -367,7 +367,7 @@ def imported(file):
     names = set()
     for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("fiberweb"):
-            if node.module == "fiberweb.scoring.tables" and [a.name for a in node.names] == [
+            if node.module == "fiberweb.tables" and [a.name for a in node.names] == [
                 "write"
             ]:
                 continue  # how a table is written is no reason to measure or simulate again

@@ -12,39 +12,20 @@ ABOUT = {
     "duration": SECTION.duration,
     "window": SECTION.window,
 }
-PHYSICS = (
-    "buckling.py",
-    "drive.py",
-    "engines/*.py",
-    "mesh.py",
-    "network.py",
-    "scene.py",
-)
 # not every platform has a wheel of it; then the tables are made without
 EXUDYN = ["<results>/tables/exudyn.csv"] if find_spec("exudyn") else []
 
 
 rule accuracy:
     input:
-        [
-            f"<results>/figures/{name}.png"
-            for name in ("speed_accuracy", "model_ladder", "stability")
-        ],
+        [figure(name, "described") for name in studies.load("accuracy").FIGURES],
         "<results>/tables/energy_drift.csv",
         EXUDYN,
 
 
 rule exudyn:
     input:
-        code=code(
-            "accuracy.py",
-            "capacity.py",
-            "dataset.py",
-            "exudyn_*.py",
-            "ridge.py",
-            "simulation.py",
-            *PHYSICS,
-        ),
+        code=code("fiberweb.validation.exudyn_check"),
         compiled="<results>/warmup.done",
     output:
         "<results>/tables/exudyn.csv",
@@ -62,7 +43,7 @@ rule exudyn:
 
 rule speed_accuracy:
     input:
-        code=code("accuracy.py", "capacity.py", "dataset.py", "ridge.py", *PHYSICS),
+        code=code("fiberweb.validation.accuracy"),
         compiled="<results>/warmup.done",
         exudyn=EXUDYN,
     output:
@@ -84,7 +65,7 @@ rule speed_accuracy:
 
 rule model_ladder:
     input:
-        code=code("accuracy.py", "capacity.py", "dataset.py", "limits.py", "ridge.py", *PHYSICS),
+        code=code("fiberweb.validation.accuracy", "fiberweb.validation.limits"),
         compiled="<results>/warmup.done",
     output:
         ladder="<results>/tables/model_ladder.csv",
@@ -107,7 +88,7 @@ rule model_ladder:
 
 rule stability:
     input:
-        code=code("limits.py", *PHYSICS),
+        code=code("fiberweb.validation.limits"),
         compiled="<results>/warmup.done",
     output:
         limits="<results>/tables/stability.csv",
@@ -126,43 +107,3 @@ rule stability:
         "Looking for the largest stable steps"
     script:
         "../scripts/stability.py"
-
-
-rule accuracy_figure:
-    input:
-        code=code(
-            "plotting/__init__.py",
-            "plotting/accuracy.py",
-            "plotting/style.py",
-            "plotting/sweep.py",
-            "tables.py",
-        ),
-        tables=lambda wildcards: [
-            f"<results>/tables/{name}.csv" for name in FIGURES[wildcards.name]
-        ],
-    output:
-        png=report(
-            "<results>/figures/{name}.png",
-            caption="../report/{name}.rst",
-            category="Accuracy",
-        ),
-        pdf="<results>/figures/{name}.pdf",
-    log:
-        "<logs>/accuracy/{name}-figure.log",
-    benchmark:
-        "<benchmarks>/accuracy/{name}-figure.tsv"
-    wildcard_constraints:
-        name="speed_accuracy|model_ladder|stability",
-    conda:
-        "../../envs/environment.yaml"
-    message:
-        "Drawing {output.png}"
-    script:
-        "../scripts/accuracy_figure.py"
-
-
-FIGURES = {
-    "speed_accuracy": ["speed_accuracy"],
-    "model_ladder": ["model_ladder", "out_of_plane"],
-    "stability": ["stability", "energy_drift"],
-}

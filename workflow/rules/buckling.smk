@@ -1,51 +1,29 @@
-# Snapshots and animations about B = 1: drawn from responses, for they need every instant.
+# Animations about B = 1: drawn from responses, for they need every instant.
 
 ANIMATIONS = [
     f"{RESULTS}/figures/buckling-B{number:g}.gif"
     for number in dict.fromkeys(CONFIG.buckling.buckling)
 ]
-DRAWN.append("buckling")
+FURTHER["buckling"] = ANIMATIONS
 
 
-rule buckling:
+rule animation:
     input:
-        figure("buckling", "described"),
-        ANIMATIONS,
-        [f"<results>/tables/{table}.csv" for table in TABLES["buckling"]],
-
-
-rule buckling_figure:
-    input:
-        code=code(
-            "buckling.py",
-            "centre_lines.py",
-            "dataset.py",
-            "network.py",
-            "plotting/__init__.py",
-            "plotting/buckling.py",
-            "plotting/film.py",
-            "plotting/style.py",
-            "scene.py",
-        ),
-        responses=lambda wildcards: responses("buckling", "described"),
+        code=code("fiberweb.studies.buckling.figure", "fiberweb.products"),
+        responses=lambda wildcards: [response(run) for run in study_runs("buckling", "described")],
     output:
-        png=report(
-            "<results>/figures/buckling.png",
-            caption="../report/buckling.rst",
-            category="Figures",
-        ),
-        pdf="<results>/figures/buckling.pdf",
-        gifs=report(ANIMATIONS, caption="../report/buckling.rst", category="Figures"),
+        report(ANIMATIONS, caption="../report/figure.rst", category="Figures"),
     log:
-        "<logs>/buckling/figure.log",
+        "<logs>/figures/animations.log",
     benchmark:
-        "<benchmarks>/buckling/figure.tsv"
+        "<benchmarks>/figures/animations.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
         seconds=CONFIG.buckling.seconds,
         frame_rate=CONFIG.buckling.frame_rate,
+        caption=caption("buckling", studies.load("buckling").FIGURES["buckling"]),
     message:
-        "Drawing {output.png} and its animations"
+        "Drawing the animations"
     script:
-        "../scripts/buckling_figure.py"
+        "../scripts/animation.py"

@@ -3,7 +3,7 @@
 
 rule capacity:
     input:
-        code=code("capacity.py", "dataset.py", "ridge.py"),
+        code=code("fiberweb.scoring.capacity", "fiberweb.simulation.dataset"),
         response="<results>/runs/{run}/response.nc",
     output:
         "<results>/runs/{run}/capacity.nc",

@@ -3,14 +3,7 @@
 
 rule warmup:
     input:
-        code=code(
-            "buckling.py",
-            "drive.py",
-            "engines/*.py",
-            "mesh.py",
-            "network.py",
-            "scene.py",
-        ),
+        code=code("fiberweb.engines"),
     output:
         touch("<results>/warmup.done"),
     log:
@@ -27,16 +20,7 @@ rule warmup:
 
 rule simulate:
     input:
-        code=code(
-            "buckling.py",
-            "dataset.py",
-            "drive.py",
-            "engines/*.py",
-            "mesh.py",
-            "network.py",
-            "scene.py",
-            "simulation.py",
-        ),
+        code=code(source.RUN),
         # not ancient(): where warmup has to run, Snakemake 9.27 then overlooks every simulation
         compiled="<results>/warmup.done",
     output:

@@ -1,12 +1,12 @@
-"""The paper's claims against the tables."""
+"""The paper's claims against the tables of one setup."""
 
 from pathlib import Path
 
 from logs import to_log
 
+from fiberweb import products
 from fiberweb.claims.judge import evaluate
-from fiberweb.scoring.tables import read, write
 
 to_log(snakemake.log[0])
-tables = {Path(path).stem: read(path) for path in snakemake.input.tables}
-write(evaluate(tables, snakemake.params.published_tables), snakemake.output[0])
+tables = {Path(path).stem: products.read(path) for path in snakemake.input.tables}
+products.write(evaluate(tables, **snakemake.params), snakemake.output[0])

@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb.scoring.tables import write
+from fiberweb.tables import write
 from fiberweb.validation.exudyn_check import table
 
 to_log(snakemake.log[0])

@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb.scoring.tables import write
+from fiberweb.tables import write
 from fiberweb.validation.accuracy import ladder
 from fiberweb.validation.limits import out_of_plane
 

@@ -2,17 +2,20 @@
 
 from logs import to_log
 
-from fiberweb import Scene, explain, simulate
+from fiberweb import Scene
 from fiberweb.simulation.dataset import save
+from fiberweb.simulation.explain import describe
+from fiberweb.simulation.plan import plan
+from fiberweb.simulation.simulate import run
 
 to_log(snakemake.log[0])
 print("run", snakemake.wildcards.run)
 print("scene", snakemake.params.scene)
 print("numerics", snakemake.params.numerics)
 
-scene = Scene.from_json(snakemake.params.scene)
-print(explain(scene, **snakemake.params.numerics))
-response = simulate(scene, **snakemake.params.numerics)
+planned = plan(Scene.from_json(snakemake.params.scene), **snakemake.params.numerics)
+print(describe(planned))
+response = run(planned)
 response.attrs["run"] = snakemake.wildcards.run
 save(response, snakemake.output[0])
 print("status", response.attrs["status"])

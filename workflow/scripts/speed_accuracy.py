@@ -3,7 +3,7 @@
 import pandas as pd
 from logs import to_log
 
-from fiberweb.scoring.tables import write
+from fiberweb.tables import write
 from fiberweb.validation.accuracy import exudyn_rows, speed_accuracy
 
 to_log(snakemake.log[0])

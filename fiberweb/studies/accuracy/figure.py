@@ -12,8 +12,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 
 MARKERS = {"kirchhoff": "o", "cosserat": "s", "elastica": "D"}
 COLOUR = dict(zip(MARKERS, style.colours(3), strict=True))
@@ -42,13 +41,14 @@ MIDDLE = {  # of the box: `limits.Point`'s defaults
 }
 
 
-def draw_speed(table: pd.DataFrame, path: str | Path) -> Figure:
+def draw_speed_accuracy(given: dict, setup: str, path: str | Path) -> Figure:
     """Error against CPU time, one row a network; columns of `accuracy.COLUMNS`.
 
     The line is the Pareto front; hollow points are shorter steps on the same mesh. Exudyn, of
     other networks and not timed, is left to the table.
     """
-    table = table[(table["setup"] == "described") & table["engine"].isin(MARKERS)]
+    table = given["speed_accuracy"]
+    table = table[(table["setup"] == setup) & table["engine"].isin(MARKERS)]
     networks = list(dict.fromkeys(table["network"]))
     with style.applied():
         made = style.figure(style.DOUBLE, 8.0 + 55.0 * len(networks))
@@ -110,14 +110,15 @@ def _engine_key(ax: Axes):
     return handles, [*(names.get(e, e) for e in MARKERS), "shorter step", "Pareto front"]
 
 
-def draw_ladder(ladder: pd.DataFrame, plane: pd.DataFrame, path: str | Path) -> Figure:
+def draw_model_ladder(given: dict, setup: str, path: str | Path) -> Figure:
     """What each rung changes and costs, and growth out of the plane; columns of
     `accuracy.LADDER_COLUMNS` and `limits.PLANE_COLUMNS`."""
+    ladder, plane = given["model_ladder"], given["out_of_plane"]
     with style.applied():
         made = style.figure(style.DOUBLE, 120.0)
         top, bottom = made.subfigures(2, 1, height_ratios=[62, 58])
         style.letter(
-            top, "a", f"Each change against the rung above it (4×4, 100 mm, {sweep.BUCKLING} = 0.8)"
+            top, "a", f"Each change against the rung above it (4×4, 100 mm, {plots.BUCKLING} = 0.8)"
         )
         style.letter(bottom, "b", "Out of the plane: a push that stays, towards the clamped ends")
         _changes(top.subplots(1, 2, sharey=True, width_ratios=[2, 1]), ladder)
@@ -168,14 +169,15 @@ def _growth(axes, plane: pd.DataFrame) -> None:
         axes[1].plot(rows["time"], rows["out_of_plane_m"] / rows["in_plane_m"], color=colour)
     axes[0].set(yscale="log", ylabel="Largest |z| (mm)")
     axes[1].set(yscale="log", ylabel="Largest |z| / largest in-plane")
-    axes[0].legend(title=sweep.BUCKLING, ncols=2)
+    axes[0].legend(title=plots.BUCKLING, ncols=2)
     for ax in axes:
         ax.set_xlabel("Time (s)")
 
 
-def draw_stability(table: pd.DataFrame, drift: pd.DataFrame, path: str | Path) -> Figure:
+def draw_stability(given: dict, setup: str, path: str | Path) -> Figure:
     """Found over predicted limits along each direction of the box, and all of them at once, with
     the drift of energy in words; columns of `limits.COLUMNS` and `limits.DRIFT_COLUMNS`."""
+    table, drift = given["stability"], given["energy_drift"]
     with style.applied():
         made = style.figure(style.DOUBLE, 130.0)
         axes = made.subplots(3, 3)

@@ -36,18 +36,20 @@ GIF_SHADES = 5  # between a colour and white, for smooth edges
 THINNED = 5  # samples to a point where whole runs are shown
 
 
-def draw(responses: Sequence[xr.Dataset], seconds: float, path: str | Path) -> Figure:
+def draw(given: dict, setup: str, path: str | Path, seconds: float) -> Figure:
     """Snapshots of each run about the widest bulge of a column in any of them, how driven point
     and column move about it, and the bulge against the momentary load.
 
     Args:
-        responses: with `centre_line`, of one crosshatch and one input, by rising force.
-        seconds: length of the time series.
+        given: "responses", with `centre_line`, of one crosshatch and one input, by rising force.
+        setup: of them all.
         path: of the figure; PNG and PDF are written beside each other.
+        seconds: length of the time series.
 
     Returns:
         The figure.
     """
+    responses = given["responses"]
     bulged = [bulges(data) for data in responses]
     middle = widest(bulged)
     instants = _snapshots(responses[0], middle)
@@ -78,7 +80,7 @@ def animate(
     """One GIF a run, in real time, all over the same seconds about the widest bulge.
 
     Args:
-        responses: as for `draw`.
+        responses: as "responses" for `draw`.
         seconds: length; the whole run if that is shorter.
         frame_rate: Hz, rounded so that a frame lasts whole hundredths of a second, as a GIF's
             must.

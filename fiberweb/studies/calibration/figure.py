@@ -18,8 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 
 GRID = K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
 SIZE = 8  # N of the crosshatch that has a misfit
@@ -44,7 +43,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
 
     Args:
         tables: "calibration" and "calibration_check", from `fiberweb.studies.calibration.tables`; and, to show
-            what readouts of the input alone score, "ridge_floors", whose runs have the same input.
+            what readouts of the input alone score, "ridge_baselines", whose runs have the same input.
         setup: rows of other setups are left out.
         path: of the figure.
 
@@ -54,9 +53,9 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    runs = sweep.rows_of(tables["calibration"], "calibration", setup)
+    runs = plots.rows_of(tables["calibration"], "calibration", setup)
     roles = tables["calibration_check"].set_index("role")
-    floors = tables.get("ridge_floors")
+    baselines = tables.get("ridge_baselines")
     dense = runs[runs["n"] == SIZE]
     with style.applied():
         figure = style.figure(style.DOUBLE, 116.0)
@@ -64,7 +63,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         style.letter(top, "a", "Misfit of the 8×8 crosshatch to the paper's four numbers")
         style.letter(bottom, "b", "The grid's best points")
         _maps(top, dense, roles)
-        _numbers(bottom, runs, dense, roles, floors)
+        _numbers(bottom, runs, dense, roles, baselines)
         style.save(figure, path)
     return figure
 
@@ -147,14 +146,14 @@ def _unstable(ax: Axes, rows: pd.DataFrame, ks: list[float], nus: list[float]) -
 
 def _numbers(
     part: SubFigure, runs: pd.DataFrame, dense: pd.DataFrame, roles: pd.DataFrame,
-    floors: pd.DataFrame | None,
+    baselines: pd.DataFrame | None,
 ) -> None:  # fmt: skip
     """The four numbers of the best points over the paper's, and C_nl and C_m of each size."""
     points = dense.dropna(subset=["misfit"]).sort_values("misfit", kind="stable")
     default = (points[list(GRID)] == roles.loc["default", list(GRID)]).all(axis=1)
     points = pd.concat([points[:SHOWN], points[SHOWN:][default[SHOWN:]]])
     axes = part.subplots(
-        1, len(SYMBOLS) + len(sweep.TOTALS), sharey=True, width_ratios=[1, 1, 1, 1, 1.3, 1.3]
+        1, len(SYMBOLS) + len(plots.TOTALS), sharey=True, width_ratios=[1, 1, 1, 1, 1.3, 1.3]
     )
     for ax, column in zip(axes, SYMBOLS, strict=False):
         value, tolerance = roles.loc[["paper", "tolerance"], column]
@@ -164,8 +163,8 @@ def _numbers(
         ax.set_xlabel(SYMBOLS[column])
         ax.margins(0.12, 0.1)
         ax.locator_params(axis="x", nbins=3)
-    for ax, name in zip(axes[len(SYMBOLS) :], sweep.TOTALS, strict=True):
-        _total(ax, name, points, runs, floors)
+    for ax, name in zip(axes[len(SYMBOLS) :], plots.TOTALS, strict=True):
+        _total(ax, name, points, runs, baselines)
     _list(axes[0], points, default)
     for ax in axes:
         ax.grid(axis="y", color=style.FAINT, lw=0.4)
@@ -178,8 +177,8 @@ def _numbers(
         f"{n}×{n}": Line2D([], [], ls="", **look) for n, look in _looks(runs).items()
     }  # fmt: skip
     handles["± standard error"] = Line2D([], [], marker="_", ms=6, mew=0.7, ls="", color=style.INK)
-    if floors is not None:
-        handles[sweep.INPUT_ALONE] = Line2D([], [], **sweep.FLOOR_LINE)
+    if baselines is not None:
+        handles[plots.INPUT_ALONE] = Line2D([], [], **plots.BASELINE_LINE)
     part.legend(
         handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
         handlelength=1.4, columnspacing=1.2,
@@ -211,18 +210,18 @@ def _looks(runs: pd.DataFrame) -> dict[int, dict]:
 
 
 def _total(
-    ax: Axes, name: str, points: pd.DataFrame, runs: pd.DataFrame, floors: pd.DataFrame | None
+    ax: Axes, name: str, points: pd.DataFrame, runs: pd.DataFrame, baselines: pd.DataFrame | None
 ) -> None:
-    """A capacity of every size at the points, with standard errors and floors."""
+    """A capacity of every size at the points, with standard errors and baselines."""
     places = -np.arange(len(points))
     for n, look in _looks(runs).items():
         same = points[list(GRID)].merge(runs[runs["n"] == n], on=list(GRID), how="left")
         ax.errorbar(same[name], places, xerr=same[f"{name}_se"], ls="", elinewidth=0.7, **look)
-    ax.set(xlabel=sweep.TOTALS[name], xlim=(0, 1), xticks=[0, 0.5, 1])
-    if floors is not None:
-        for value in floors[name]:
-            ax.axvline(value, zorder=0, **sweep.FLOOR_LINE)
-        for row, (value, label) in enumerate(sweep.floor_labels(floors, name, 0.1)):
+    ax.set(xlabel=plots.TOTALS[name], xlim=(0, 1), xticks=[0, 0.5, 1])
+    if baselines is not None:
+        for value in baselines[name]:
+            ax.axvline(value, zorder=0, **plots.BASELINE_LINE)
+        for row, (value, label) in enumerate(plots.baseline_labels(baselines, name, 0.1)):
             ax.annotate(  # one above the other, because the column is narrow
                 label, (value, 1.0), (0.0, 1.5 + 7.5 * (row % 2)), textcoords="offset points",
                 xycoords=("data", "axes fraction"), ha="center", fontsize=6,

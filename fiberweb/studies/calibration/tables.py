@@ -20,6 +20,7 @@ import pandas as pd
 from fiberweb.claims import judge as claims
 from fiberweb.model.scene import SETUPS
 from fiberweb.scoring import tables
+from fiberweb.tables import read
 
 SIZE = 8  # N of the crosshatch of Fig. 1d
 # column: claim, and where its capacity is: Legendre order, or lag in s
@@ -163,7 +164,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("table", help="calibration.csv of the workflow")
     try:
-        agrees, sentence = verdict(check(tables.read(parser.parse_args().table)))
+        agrees, sentence = verdict(check(read(parser.parse_args().table)))
     except (OSError, ValueError) as error:
         sys.exit(str(error))
     if not agrees:

@@ -13,9 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import panels as parts
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots, style
 
 SHOWN = 6  # pairs whose separation is drawn
 # of the network's length, as in fiberweb.studies.chaos.tables, from which a figure need not be drawn again
@@ -32,7 +30,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
 
     Args:
         tables: "chaos_rates" (`chaos.rates`), "chaos_separations" (`chaos.separations`) and
-            "chaos_floors" (`tables.floors`).
+            "chaos_baselines" (`tables.input_baselines`).
         setup: "described" or "published".
         path: of the figure; PNG and PDF are written beside each other.
 
@@ -42,7 +40,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table of rates has no run of this setup.
     """
-    rows = sweep.rows_of(tables["chaos_rates"], "chaos_rates", setup).sort_values("buckling_number")
+    rows = plots.rows_of(tables["chaos_rates"], "chaos_rates", setup).sort_values("buckling_number")
     apart = tables["chaos_separations"]
     apart = apart[apart["setup"] == setup]
     bad = (rows[["status", "twin_status"]] == "unstable").any(axis=1)
@@ -52,19 +50,19 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         style.letter(top, "a", f"Separation of twin runs, rms over readouts ({setup} setup)")
         _separations(top.subplots(), apart, rows)
         axes = bottom.subplots(1, 4)
-        titles = ("Growth rate", "Twins, last half", *parts.CAPACITIES.values())
+        titles = ("Growth rate", "Twins, last half", *panels.CAPACITIES.values())
         for ax, letter, title in zip(axes, "bcde", titles, strict=True):
-            parts.letter(ax, letter, title)
+            panels.letter(ax, letter, title)
             _over_buckling(ax, rows)
         _rate(axes[0], rows)
         _consistency(axes[1], rows)
-        for ax, (name, symbol) in zip(axes[2:], sweep.TOTALS.items(), strict=True):
+        for ax, (name, symbol) in zip(axes[2:], plots.TOTALS.items(), strict=True):
             _points(ax, rows, name, f"{name}_se")
             ax.set(ylim=(-0.03, 1.03), ylabel=symbol)
-            sweep.floors(ax, tables["chaos_floors"], name)
+            plots.baselines(ax, tables["chaos_baselines"], name)
         for ax in axes:
             style.mark_unstable(ax, list(rows.loc[bad, "buckling_number"]))
-        parts.key(bottom, _handles(bad.any()), ncols=2, columnspacing=3.0)
+        panels.key(bottom, _handles(bad.any()), ncols=2, columnspacing=3.0)
         style.save(figure, path)
     return figure
 
@@ -78,14 +76,14 @@ def _shown(buckling: pd.Series) -> list[float]:
 
 def _separations(ax: Axes, apart: pd.DataFrame, rows: pd.DataFrame) -> None:
     """Separation of some pairs over time, and where it is but round-off."""
-    for number, colour in sweep.colours(_shown(rows["buckling_number"])).items():
+    for number, colour in plots.colours(_shown(rows["buckling_number"])).items():
         pair = apart[apart["buckling_number"] == number]
         ax.plot(pair["time_s"], pair["separation_m"], color=colour, lw=0.7, label=f"{number:.3g}")
     ax.set(yscale="log", xlabel="Time (s)", ylabel="Separation (m)")
     ax.margins(x=0.01)
     _round_off(ax, ROUND_OFF * (rows["spacing_m"] * (rows["n"] + 1)).max())
     legend = ax.legend(
-        title=f"Buckling\nnumber {sweep.BUCKLING}", loc="upper left", bbox_to_anchor=(1.0, 1.0)
+        title=f"Buckling\nnumber {plots.BUCKLING}", loc="upper left", bbox_to_anchor=(1.0, 1.0)
     )
     legend.set(alignment="left")
 
@@ -102,7 +100,7 @@ def _round_off(ax: Axes, level: float) -> None:
 
 def _over_buckling(ax: Axes, rows: pd.DataFrame) -> None:
     """A log axis of B with its buckling at 1."""
-    ax.set(xscale="log", xlabel=f"Buckling number {sweep.BUCKLING}")
+    ax.set(xscale="log", xlabel=f"Buckling number {plots.BUCKLING}")
     ticks = [0.2, 0.5, 1, 2, 5]
     ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     ax.minorticks_off()
@@ -132,6 +130,6 @@ def _handles(unstable: bool) -> dict[str, Line2D]:
     handles = {
         "consistency: correlation of the twins": Line2D([], [], **CONSISTENCY),
         "saturation: separation / that of unrelated motions": Line2D([], [], **SATURATION),
-        f"buckling at {sweep.BUCKLING} = 1": Line2D([], [], **BUCKLING),
+        f"buckling at {plots.BUCKLING} = 1": Line2D([], [], **BUCKLING),
     }
-    return handles | parts.floor_and_unstable(unstable)
+    return handles | panels.baseline_and_unstable(unstable)

@@ -20,7 +20,9 @@ from fiberweb.claims.judge import (
     inside_range,
 )
 
-SLIGHT = 0.1  # in a capacity: the most by which a group is slightly better or worse
+# in a capacity: the most by which a group is "slightly" better or worse; our own choice, three
+# allowances
+SLIGHT = 0.1
 THIRD_TOLERANCE = 0.05  # of all outputs
 CROSSINGS = ("crossing_x", "crossing_y")
 LATERAL = ("horizontal_midpoint_y", "vertical_midpoint_x")

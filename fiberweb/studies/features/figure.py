@@ -16,9 +16,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import panels as parts
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots, style
 from fiberweb.model.network import Network, crosshatch
 from fiberweb.scoring import groups
 
@@ -42,7 +40,7 @@ KIND_COLOUR = dict(zip(groups.KINDS, style.colours(3)))
 FORCES = cm.oslo  # batlow's colours stand for kinds of readouts here
 BAR = 0.26  # width, where groups lie 1 apart
 EDGE = {"edgecolor": style.INK, "linewidth": 0.4}  # the palest bars would hardly show without
-UNDER = -1  # bars and their errors lie under the floors, which they would hide
+UNDER = -1  # bars and their errors lie under the baselines, which they would hide
 TITLE = 12.0  # points from an axes to its title, with a line of shares between
 HELD = {"color": style.GREY, "marker": "s", "ms": 2.4, "mew": 0, "ls": ""}
 PULLED = {"color": style.GREY, "marker": ">", "ms": 3, "mew": 0, "ls": ""}
@@ -56,7 +54,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
 
     Args:
         tables: "features" and "features_greedy" from `fiberweb.studies.features.tables`, of which rows of other
-            setups are left out, and "features_floors" from `fiberweb.scoring.tables.floors`. An unstable
+            setups are left out, and "features_baselines" from `fiberweb.scoring.tables.input_baselines`. An unstable
             run is drawn as an X.
         setup: "described" or "published".
         path: of the figure; both suffixes are written beside each other.
@@ -77,7 +75,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         size = f"{network.n}×{network.n}"
         style.letter(top, "a", f"Groups of readouts, {size} crosshatch ({setup} setup)")
         _schematics(top, network)
-        _scores(middle, table, tables["features_floors"])
+        _scores(middle, table, tables["features_baselines"])
         curves, places = bottom.subfigures(1, 2, width_ratios=[1.3, 1])
         force = f"{greedy['force_N'].iloc[0]:g} N"
         style.letter(curves, "e", f"Signals at {force}, chosen one by one on the training part")
@@ -146,20 +144,20 @@ def _strokes(ax: Axes, points: pd.DataFrame, used: np.ndarray) -> None:
             ax.plot(some["x"], some["y"], marker, color=colour, zorder=4, **STROKE)
 
 
-def _scores(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame) -> None:
+def _scores(part: SubFigure, table: pd.DataFrame, baselines: pd.DataFrame) -> None:
     """C_nl, C_m and effective rank of each group at each force."""
     names = [name for name in NAMES if (table["group"] == name).any()]
     forces = sorted(table["force_N"].unique())
     colour = dict(zip(forces, FORCES(np.linspace(0.25, 0.8, len(forces)))))
     shift = dict(zip(forces, BAR * (np.arange(len(forces)) - (len(forces) - 1) / 2)))
     axes = part.subplots(3, 1, sharex=True, height_ratios=[1.1, 1.1, 0.8])
-    for ax, letter, (column, symbol) in zip(axes, "bc", sweep.TOTALS.items()):
+    for ax, letter, (column, symbol) in zip(axes, "bc", plots.TOTALS.items()):
         for force in forces:
             _bars(ax, table[table["force_N"] == force], names, column, colour[force], shift[force])
         _shares(ax, table[table["verdict"]], names, column)
-        parts.letter(ax, letter, f"{parts.CAPACITIES[column]} of each group", TITLE)
-        ax.set(ylabel=symbol, ylim=(0.0, sweep.top(table, floors, column)))
-        sweep.floors(ax, floors, column)
+        panels.letter(ax, letter, f"{panels.CAPACITIES[column]} of each group", TITLE)
+        ax.set(ylabel=symbol, ylim=(0.0, plots.top(table, baselines, column)))
+        plots.baselines(ax, baselines, column)
     ranks, counts = axes[2], table.drop_duplicates("group").set_index("group")["n_signals"]
     for force in forces:
         rank = _one(table[table["force_N"] == force], names)["effective_rank"]
@@ -170,13 +168,13 @@ def _scores(part: SubFigure, table: pd.DataFrame, floors: pd.DataFrame) -> None:
         "number of signals", (0, counts[names[0]]), (11, 0), textcoords="offset points",
         va="center", fontsize=6,
     )  # fmt: skip
-    parts.letter(ranks, "d", "Effective rank of each group")
+    panels.letter(ranks, "d", "Effective rank of each group")
     ranks.set(ylabel="Effective rank", yscale="log", ylim=(1, 2.5 * counts.max()))
     ranks.set_yticks([1, 10, 100], ["1", "10", "100"])
     ranks.set_xticks(range(len(names)), [f"{NAMES[name]}\n{counts[name]}" for name in names])
     ranks.tick_params(axis="x", length=0)
     ranks.set_xlim(-0.5, len(names) - 0.5)
-    parts.key(part, _handles(table, colour), loc="outside upper center", ncols=3)
+    panels.key(part, _handles(table, colour), loc="outside upper center", ncols=3)
 
 
 def _bars(ax: Axes, rows: pd.DataFrame, names: list[str], column: str, colour, shift) -> None:
@@ -218,17 +216,17 @@ def _handles(table: pd.DataFrame, colour: dict) -> dict:
     handles = {}
     for force, rows in table.groupby("force_N"):
         verdict = ", verdicts" if rows["verdict"].any() else ""
-        label = f"{force:g} N ({sweep.BUCKLING} = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
+        label = f"{force:g} N ({plots.BUCKLING} = {rows['buckling_number'].iloc[0]:.2f}{verdict})"
         handles[label] = Patch(facecolor=colour[force], **EDGE)
     handles["± standard error"] = Line2D([], [], color=style.INK, marker="|", ms=7, mew=0.8, ls="")
     handles["shuffled split"] = Line2D([], [], **SHUFFLED)
-    return handles | parts.floor_and_unstable((table["status"] == "unstable").any())
+    return handles | panels.baseline_and_unstable((table["status"] == "unstable").any())
 
 
 def _curves(part: SubFigure, table: pd.DataFrame, greedy: pd.DataFrame) -> None:
     """Share of a capacity over the number of signals."""
     scored = _one(table[table["verdict"]], [*groups.REDUCED, "all"])
-    for ax, (target, symbol) in zip(part.subplots(1, 2), sweep.TOTALS.items()):
+    for ax, (target, symbol) in zip(part.subplots(1, 2), plots.TOTALS.items()):
         chosen = greedy[greedy["target"] == target]
         if (chosen["status"] == "unstable").any():
             style.mark_unstable(ax, [1.0])
@@ -239,7 +237,7 @@ def _curves(part: SubFigure, table: pd.DataFrame, greedy: pd.DataFrame) -> None:
     handles = {
         _name(group): Line2D([], [], marker=marker, **GROUP) for group, marker in MARKED.items()
     }
-    parts.key(part, {"chosen signals": Line2D([], [], color=style.INK)} | handles)
+    panels.key(part, {"chosen signals": Line2D([], [], color=style.INK)} | handles)
 
 
 def _curve(ax: Axes, chosen: pd.DataFrame, scored: pd.DataFrame, target: str) -> None:
@@ -265,7 +263,7 @@ def _curve(ax: Axes, chosen: pd.DataFrame, scored: pd.DataFrame, target: str) ->
 
 def _places(part: SubFigure, network: Network, greedy: pd.DataFrame) -> None:
     """The network with the fewest signals that keep the share, for either capacity."""
-    for ax, (target, symbol) in zip(part.subplots(1, 2), sweep.TOTALS.items()):
+    for ax, (target, symbol) in zip(part.subplots(1, 2), plots.TOTALS.items()):
         chosen = greedy[greedy["target"] == target]
         _network(ax, network)
         ax.set_title(f"For {symbol}")

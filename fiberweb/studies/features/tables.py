@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb.model.readouts import of_signals
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import capacity, groups, selection, tables
 from fiberweb.simulation import dataset
@@ -111,11 +112,11 @@ def _chosen(response, target: str, alpha: float, share: float) -> list[dict]:
     rate = float(response.attrs["sample_rate"])
     found = selection.forward(u, moved, rate, target, alpha)
     c = getattr(found, target)
-    points = response.sizes["readout"]
+    readout, axis = of_signals(found.signal, response.sizes["readout"])
     made = pd.DataFrame({name: getattr(found, name) for name in TOTALS})
     for name in ("kind", "fibre", "section"):
-        made[name] = response[name].values[found.signal % points]
-    made["axis"] = [("x", "y")[signal // points] for signal in found.signal]
+        made[name] = response[name].values[readout]
+    made["axis"] = axis
     made["n_chosen"] = range(1, len(made) + 1)
     made["kept"] = c / c[-1]
     made["needed"] = selection.needed(c, share)

@@ -14,8 +14,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 
 K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
 FILTER, ELEMENTS, STEP = "filter_order", "elements_per_section", "time_step_s"
@@ -47,7 +46,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     """Draw the study for one setup and write it as PNG and PDF.
 
     Args:
-        tables: "memory_origin", from `fiberweb.scoring.tables.study`, and "memory_origin_floors".
+        tables: "memory_origin", from `fiberweb.scoring.tables.study`, and "memory_origin_baselines".
         setup: "described": panels a and b; "published": the authors' networks with and without
             the filter.
         path: of the figure.
@@ -58,21 +57,21 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    rows = sweep.rows_of(tables["memory_origin"], "memory_origin", setup)
-    floor = tables["memory_origin_floors"]
+    rows = plots.rows_of(tables["memory_origin"], "memory_origin", setup)
+    baseline = tables["memory_origin_baselines"]
     with style.applied():
         if setup == "published":
             figure = style.figure(style.DOUBLE, 66.0)
             style.letter(figure, "a", "Memory of the authors' networks (published setup)")
-            _totals(figure, _filter_series(rows), rows, floor)
+            _totals(figure, _filter_series(rows), rows, baseline)
         else:
             figure = style.figure(style.DOUBLE, 174.0)
             top, bottom = figure.subfigures(2, 1, height_ratios=[66, 108])
             style.letter(top, "a", "What carries memory (described setup)")
             style.letter(bottom, "b", "One thing at a time")
             families = _families(rows)
-            _totals(top, _described_series(families), rows, floor)
-            _sweeps(bottom, families, floor)
+            _totals(top, _described_series(families), rows, baseline)
+            _sweeps(bottom, families, baseline)
         style.save(figure, path)
     return figure
 
@@ -142,29 +141,29 @@ def _element(rows: pd.DataFrame) -> pd.Series:
     return 1e3 * rows["spacing_m"] / rows[ELEMENTS].astype(float)
 
 
-def _totals(part: SubFigure, kinds: dict, rows: pd.DataFrame, floor: pd.DataFrame) -> None:
+def _totals(part: SubFigure, kinds: dict, rows: pd.DataFrame, baseline: pd.DataFrame) -> None:
     """C_nl and C_m over N, one line a carrier, and the keys of physics and numerics beside them."""
     *axes, beside = part.subplots(1, 3, width_ratios=[1, 1, 1.15])
     sizes = sorted(rows["n"].unique())
     series = {label: one for kind in kinds.values() for label, one in kind.items()}
-    for ax, name in zip(axes, sweep.TOTALS, strict=True):
+    for ax, name in zip(axes, plots.TOTALS, strict=True):
         for place, (frame, look) in enumerate(series.values()):
             aside = ASIDE * (place - (len(series) - 1) / 2)
             stable = frame[frame["status"] == "ok"].sort_values("n")
-            sweep.points(ax, stable, "n", name, aside, **MARK | look)
+            plots.points(ax, stable, "n", name, aside, **MARK | look)
         known = AUTHORS_TABLE.reindex(sizes)
         ax.plot(sizes, known[name], zorder=4, **TABLE)
-        ax.set(xlabel="Fibres in each direction, $N$", ylabel=sweep.TOTALS[name])
+        ax.set(xlabel="Fibres in each direction, $N$", ylabel=plots.TOTALS[name])
         ax.set(xticks=sizes, xlim=(sizes[0] - 0.8, sizes[-1] + 0.8), ylim=AXIS)
         lost = pd.concat([frame for frame, _ in series.values()])
         style.mark_unstable(ax, list(lost.loc[lost["status"] == "unstable", "n"]))
-        sweep.floors(ax, floor, name)
+        plots.baselines(ax, baseline, name)
     beside.axis("off")
     keys = {
         kind: {label: Line2D([], [], **look) for label, (_, look) in one.items()}
         for kind, one in kinds.items()
     }
-    _keys(beside, keys | {"": {"the authors' table": Line2D([], [], **TABLE)} | sweep.key(rows)})
+    _keys(beside, keys | {"": {"the authors' table": Line2D([], [], **TABLE)} | plots.key(rows)})
 
 
 def _keys(ax: Axes, keys: dict[str, dict[str, Line2D]]) -> None:
@@ -180,7 +179,7 @@ def _keys(ax: Axes, keys: dict[str, dict[str, Line2D]]) -> None:
         above -= KEY_LINE * (len(handles) + 1.8)
 
 
-def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], floor: pd.DataFrame) -> None:
+def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], baseline: pd.DataFrame) -> None:
     """C_nl above and C_m below, one column for each thing that is changed."""
     axes = part.subplots(
         2, len(COLUMNS), sharey=True, sharex="col", width_ratios=[1, 1, 1, 1, 1.35]
@@ -189,7 +188,7 @@ def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], floor: pd.DataFr
     base = _base(springs)
     sizes = sorted(pd.concat(families.values())["n"].unique())
     colour = dict(zip(sizes, style.colours(len(sizes)), strict=True))
-    for row, name in zip(axes, sweep.TOTALS, strict=True):
+    for row, name in zip(axes, plots.TOTALS, strict=True):
         for ax, column in zip(row, (K, NU, GAMMA), strict=False):
             others = {key: value for key, value in base.items() if key != column}
             _lines(ax, _of(springs, **others), column, name, colour)
@@ -199,10 +198,10 @@ def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], floor: pd.DataFr
         _filter(row[4], filtered, name, colour)
         for ax in row:
             ax.set_ylim(*AXIS)
-            for value in floor[name] if ax is not row[-1] else ():
-                ax.axhline(value, zorder=0, **sweep.FLOOR_LINE)
-        row[0].set_ylabel(sweep.TOTALS[name])
-        sweep.floors(row[-1], floor, name)
+            for value in baseline[name] if ax is not row[-1] else ():
+                ax.axhline(value, zorder=0, **plots.BASELINE_LINE)
+        row[0].set_ylabel(plots.TOTALS[name])
+        plots.baselines(row[-1], baseline, name)
     for column, (title, label) in enumerate(COLUMNS.values()):
         axes[0, column].set_title(title)
         axes[1, column].set_xlabel(label)
@@ -227,7 +226,7 @@ def _lines(ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict) -> Non
     """A capacity over column x, one line a size."""
     for n, frame in rows.groupby("n"):
         frame = frame[frame["status"] == "ok"].sort_values(x)
-        sweep.points(ax, frame, x, name, marker="o", ms=2.2, lw=0.8, color=colour[n])
+        plots.points(ax, frame, x, name, marker="o", ms=2.2, lw=0.8, color=colour[n])
     style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", x]))
 
 
@@ -242,8 +241,8 @@ def _filter(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
             aside = ASIDE * (list(colour).index(n) - (len(colour) - 1) / 2)
             look = {"marker": marker, "color": colour[n], "shift": aside}
             on, off = frame[frame[FILTER] > 0], frame[frame[FILTER] == 0]
-            sweep.points(ax, off, "element", name, ms=3.6, **look | OFF)
-            sweep.points(ax, on, "element", name, ms=2.2, **look)
+            plots.points(ax, off, "element", name, ms=3.6, **look | OFF)
+            plots.points(ax, on, "element", name, ms=2.2, **look)
     ax.set_xlim(0.0, 1.15 * rows["element"].max())
     style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", "element"]))
 

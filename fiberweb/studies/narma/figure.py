@@ -18,8 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.figures import panels as parts
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots, style
 
 SHOWN = "same"  # the timing of the authors' script; the other one is a marker beside it
 PAPER_N = 6  # of the crosshatch in the experiment
@@ -57,14 +56,13 @@ class Readout:
     inner: Sequence[float] | str  # median and deciles, to show on the face
 
 
-def draw(table: pd.DataFrame, found: xr.Dataset, setup: str, path: str | Path) -> Figure:
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
     """Draw the figure for one setup and write it as PNG and PDF: a column for each order.
 
     Args:
-        table: from `narma.table`; rows of other setups are left out. A run whose status is
-            "unstable" is drawn as an X.
-        found: from `narma.of_runs`, of the same runs.
-        setup: "described" or "published".
+        given: "narma" (`task.table`; a run whose status is "unstable" is drawn as an X) and
+            "narma_errors" (`task.of_runs`), of the same runs.
+        setup: "described" or "published"; rows of the other one are left out.
         path: of the figure; both suffixes are written beside each other.
 
     Returns:
@@ -73,9 +71,7 @@ def draw(table: pd.DataFrame, found: xr.Dataset, setup: str, path: str | Path) -
     Raises:
         ValueError: the table has no run of this setup.
     """
-    table = table[table["setup"] == setup]
-    if table.empty:
-        raise ValueError(f"the NARMA table has no run of the {setup} setup to draw")
+    table, estimates = plots.rows_of(given["narma"], "NARMA", setup), given["narma_errors"]
     readouts, shown = _readouts(table), _example(table)
     orders = sorted(table["order"].unique())
     with style.applied():
@@ -84,15 +80,15 @@ def draw(table: pd.DataFrame, found: xr.Dataset, setup: str, path: str | Path) -
         axes = figure.subplots(len(ROWS), len(orders), squeeze=False, height_ratios=ROWS)
         for column, order in zip(axes.T, orders, strict=True):
             of_order = table[table["order"] == order]
-            _errors(column[0], found, readouts, order)
+            _errors(column[0], estimates, readouts, order)
             for ax, measure in zip(column[1:-1], MEASURES, strict=True):
                 _bars(ax, of_order, readouts, measure)
             _labels(column[-2], readouts)
-            _traces(column[-1], found, of_order, shown, order)
+            _traces(column[-1], estimates, of_order, shown, order)
         _titles(axes[:, 0], shown)
         axes[-2, 0].set_xlabel(READOUTS, loc="left")
         figure.align_ylabels(axes[:, 0])
-        parts.key(figure, _handles(table), ncols=4)
+        panels.key(figure, _handles(table), ncols=4)
         style.save(figure, path)
     return figure
 
@@ -103,7 +99,7 @@ def _titles(axes: Sequence[Axes], shown: Readout) -> None:
     labels = ["Error", *(symbol for _, symbol in MEASURES.values()), r"$y,\ \hat{y}$"]
     titles.append(f"{shown.label} network")
     for ax, letter, title, label in zip(axes, "abcde", titles, labels, strict=True):
-        parts.letter(ax, letter, title)
+        panels.letter(ax, letter, title)
         ax.set_ylabel(f"{label} {UNIT}")
 
 
@@ -197,8 +193,8 @@ def _traces(ax: Axes, found: xr.Dataset, table: pd.DataFrame, shown: Readout, or
     seen = found.sel(run=shown.run, order=order, timing=SHOWN)
     seen = seen.sel(time=slice(None, float(seen["time"][0]) + TRACE_SECONDS))
     time, estimate = seen["time"].values, MILLI * seen["estimate"].sel(readout=shown.name).values
-    ax.plot(time, estimate, **parts.PREDICTION)
-    ax.plot(time, MILLI * seen["target"].values, **parts.TARGET)
+    ax.plot(time, estimate, **panels.PREDICTION)
+    ax.plot(time, MILLI * seen["target"].values, **panels.TARGET)
     if np.isnan(estimate).any():
         style.mark_unstable(ax, [time.mean()])
     else:
@@ -215,8 +211,8 @@ def _handles(table: pd.DataFrame) -> dict[str, Artist]:
         "of the next one": Line2D([], [], **NEXT),
         "paper's experiment, another input": Line2D([], [], **EXPERIMENT),
         r"$\sigma_y$, the mean's error": Line2D([], [], **MEAN),
-        "target $y$": Line2D([], [], **parts.TARGET),
-        r"estimate $\hat{y}$": Line2D([], [], **parts.PREDICTION),
+        "target $y$": Line2D([], [], **panels.TARGET),
+        r"estimate $\hat{y}$": Line2D([], [], **panels.PREDICTION),
     }
     if (table["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)

@@ -14,9 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import panels as parts
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots, style
 
 MICRO = 1e6  # m to um
 # orders of magnitude, to place the scale
@@ -29,7 +27,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     """Draw C_nl and C_m over the noise of the readouts, for one setup.
 
     Args:
-        tables: "noise" (`fiberweb.studies.noise.tables.table`) and "noise_floors" (`tables.floors`).
+        tables: "noise" (`fiberweb.studies.noise.tables.table`) and "noise_baselines" (`tables.input_baselines`).
         setup: "described" or "published".
         path: of the figure; PNG and PDF are written beside each other.
 
@@ -39,20 +37,20 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    rows = sweep.rows_of(tables["noise"], "noise", setup)
-    colour = sweep.colours(rows["n"])
+    rows = plots.rows_of(tables["noise"], "noise", setup)
+    colour = plots.colours(rows["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 70.0)
         axes = figure.subplots(1, 2)
-        for ax, (name, symbol), letter in zip(axes, sweep.TOTALS.items(), "ab", strict=True):
+        for ax, (name, symbol), letter in zip(axes, plots.TOTALS.items(), "ab", strict=True):
             for n in colour:
                 _network(ax, rows[rows["n"] == n], name, colour[n])
             _scale(ax, rows)
-            title = f"{parts.CAPACITIES[name]} ({setup} setup)"
-            parts.letter(ax, letter, title, pad=20)  # above the instruments
+            title = f"{panels.CAPACITIES[name]} ({setup} setup)"
+            panels.letter(ax, letter, title, pad=20)  # above the instruments
             ax.set(ylabel=symbol, ylim=(0.0, 1.0))
-            sweep.floors(ax, tables["noise_floors"], name)
-        parts.key(figure, _handles(rows, colour))
+            plots.baselines(ax, tables["noise_baselines"], name)
+        panels.key(figure, _handles(rows, colour))
         style.save(figure, path)
     return figure
 
@@ -112,4 +110,4 @@ def _handles(rows: pd.DataFrame, colour: dict) -> dict:
     bar = Line2D([], [], marker="|", ms=7, mew=0.8, ls="", color=style.INK)
     handles["± standard error"] = bar
     handles["sd of the median readout"] = Patch(**AMPLITUDES)
-    return handles | parts.floor_and_unstable((rows["status"] == "unstable").any())
+    return handles | panels.baseline_and_unstable((rows["status"] == "unstable").any())

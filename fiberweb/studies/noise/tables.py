@@ -54,7 +54,7 @@ def table(
 
     Args:
         response_paths: files with the attr ``run``.
-        choices: of each path, see `fiberweb.studies.points.Point`.
+        choices: of each path, see `fiberweb.studies.base.Point`.
         noise: standard deviations (m).
         seeds: draws at each level, numbered from 0.
         alpha: ridge penalty.

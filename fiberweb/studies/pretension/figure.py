@@ -11,8 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 
 PAPERS_LEAST = 0.01  # N
 ASIDE = 1.2  # points from one spacing to the next
@@ -22,7 +21,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     """Draw the pretension study of one setup and write it as PNG and PDF.
 
     Args:
-        tables: "pretension" (`tables.study`) and "ridge_floors" (`tables.floors`). An unstable
+        tables: "pretension" (`tables.study`) and "ridge_baselines" (`tables.input_baselines`). An unstable
             run is an X.
         setup: "described" or "published"; rows of the other one are left out.
         path: of the figure; both suffixes are written beside each other.
@@ -33,21 +32,21 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    rows = sweep.rows_of(tables["pretension"], "pretension", setup)
-    floors = tables["ridge_floors"]
-    colour = sweep.colours(rows["spacing_m"])
+    rows = plots.rows_of(tables["pretension"], "pretension", setup)
+    baselines = tables["ridge_baselines"]
+    colour = plots.colours(rows["spacing_m"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 76.0)
         axes = figure.subplots(1, 2)
-        for ax, letter, name in zip(axes, "ab", sweep.TOTALS):
+        for ax, letter, name in zip(axes, "ab", plots.TOTALS):
             _tensions(ax, sorted(rows["tension_N"].unique()))
-            sweep.lines(ax, rows, "tension_N", name, colour, ASIDE)
-            sweep.scale(ax, rows, floors, name)
-            sweep.floors(ax, floors, name)
-            title = f"{sweep.TOTALS[name]} over pretension ({setup} setup)"
+            plots.lines(ax, rows, "tension_N", name, colour, ASIDE)
+            plots.scale(ax, rows, baselines, name)
+            plots.baselines(ax, baselines, name)
+            title = f"{plots.TOTALS[name]} over pretension ({setup} setup)"
             ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
-        sweep.spacing_bar(figure, axes, colour)
-        handles = sweep.key(rows)
+        plots.spacing_bar(figure, axes, colour)
+        handles = plots.key(rows)
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
         style.save(figure, path)
     return figure

@@ -22,12 +22,12 @@ from fiberweb.claims.judge import (
     numbers,
     rises,
 )
-from fiberweb.model.buckling import authors_reference_force
+from fiberweb.claims.rows import SAME, mm, stable, within
+from fiberweb.model.authors import reference_force as authors_reference_force
 
 NAMES = {"c_nl": "C_nl", "c_m": "C_m"}
 MEMORY_BAND = (0.06, 0.10)  # m, where C_m peaks
 LARGE = 0.10  # m, large spacings are beyond that band
-SAME = 1e-3  # relative, of spacings and forces that are the same but for rounding
 THINNED = "thinned ridge: needs every force at every spacing"
 
 
@@ -164,21 +164,6 @@ def authors_force_spacing_table(evidence: Evidence) -> Answer:
     if len(both) > len(known):
         text += f", {len(both) - len(known)} unstable"
     return Answer(text, inside_range(evidence.claim, rms))
-
-
-def within(spacing: float, band: tuple[float, float]) -> bool:
-    """Whether a spacing lies in a band (m), ends included, give or take rounding."""
-    return band[0] * (1 - SAME) <= spacing <= band[1] * (1 + SAME)
-
-
-def mm(spacing: float) -> str:
-    """A spacing (m) as text."""
-    return f"{1e3 * spacing:g} mm"
-
-
-def stable(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows whose capacities are known."""
-    return table[table["status"] == "ok"]
 
 
 def _by_spacing(table: pd.DataFrame) -> dict[float, pd.DataFrame]:

@@ -15,9 +15,8 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
-from fiberweb.model.buckling import authors_reference_force
+from fiberweb.figures import plots, style
+from fiberweb.model.authors import reference_force as authors_reference_force
 
 NOT_RUN = "#ececec"
 HALO = [patheffects.withStroke(linewidth=2.2, foreground="white")]
@@ -33,8 +32,8 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     """Draw the ridge of one setup and write it as PNG and PDF.
 
     Args:
-        tables: "ridge" (`tables.study`), "ridge_onset" (`onset.onsets`) and "ridge_floors"
-            (`tables.floors`). Forces may differ from one spacing to the next; what was not run
+        tables: "ridge" (`tables.study`), "ridge_onset" (`onset.onsets`) and "ridge_baselines"
+            (`tables.input_baselines`). Forces may differ from one spacing to the next; what was not run
             stays grey, and an unstable run is an X.
         setup: "described" or "published"; rows of the other one are left out.
         path: of the figure; both suffixes are written beside each other.
@@ -45,41 +44,43 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    ridge = sweep.rows_of(tables["ridge"], "ridge", setup)
+    ridge = plots.rows_of(tables["ridge"], "ridge", setup)
     onset = tables["ridge_onset"]
     onset = onset[onset["setup"] == setup]
-    floors = tables["ridge_floors"]
-    colour = sweep.colours(ridge["spacing_m"])
+    baselines = tables["ridge_baselines"]
+    colour = plots.colours(ridge["spacing_m"])
     size = f"{ridge['n'].iloc[0]}×{ridge['n'].iloc[0]}"
     with style.applied():
         figure = style.figure(style.DOUBLE, 138.0)
         top, bottom = figure.subfigures(2, 1, height_ratios=[64, 74])
-        for ax, letter, name in zip(top.subplots(1, 2), "ab", sweep.TOTALS):
-            _map(ax, ridge, onset, floors, name)
-            _bar(top, ax, floors, name)
-            title = f"{sweep.TOTALS[name]} ({size}, {setup} setup)"
+        for ax, letter, name in zip(top.subplots(1, 2), "ab", plots.TOTALS):
+            _map(ax, ridge, onset, baselines, name)
+            _bar(top, ax, baselines, name)
+            title = f"{plots.TOTALS[name]} ({size}, {setup} setup)"
             ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
         *axes, last = bottom.subplots(1, 3, width_ratios=[1, 1, 0.6])
-        for ax, letter, name in zip(axes, "cd", sweep.TOTALS):
-            _over_buckling(ax, ridge, floors, name, colour)
-            title = f"{sweep.TOTALS[name]} over {sweep.BUCKLING}"
+        for ax, letter, name in zip(axes, "cd", plots.TOTALS):
+            _over_buckling(ax, ridge, baselines, name, colour)
+            title = f"{plots.TOTALS[name]} over {plots.BUCKLING}"
             ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
         _onset(last, onset, colour)
-        sweep.spacing_bar(bottom, [*axes, last], colour)
+        plots.spacing_bar(bottom, [*axes, last], colour)
         _key(bottom, ridge)
         style.save(figure, path)
     return figure
 
 
 def _map(
-    ax: Axes, ridge: pd.DataFrame, onset: pd.DataFrame, floors: pd.DataFrame, name: str
+    ax: Axes, ridge: pd.DataFrame, onset: pd.DataFrame, baselines: pd.DataFrame, name: str
 ) -> None:
     """One cell a run, the two lines of theory, and the best force of each spacing."""
     cells = ridge.pivot(index="force_N", columns="spacing_m", values=name)
     spacing, force = 1e3 * cells.columns.to_numpy(), cells.index.to_numpy()
     x, y = _edges(spacing), np.exp(_edges(np.log(force)))
     ax.set_facecolor(NOT_RUN)
-    ax.pcolormesh(x, y, cells, cmap=style.SEQUENTIAL, vmin=0.0, vmax=sweep.top(ridge, floors, name))
+    ax.pcolormesh(
+        x, y, cells, cmap=style.SEQUENTIAL, vmin=0.0, vmax=plots.top(ridge, baselines, name)
+    )
     unstable = ridge[ridge["status"] == "unstable"]
     ax.plot(
         1e3 * unstable["spacing_m"], unstable["force_N"], gid="unstable", zorder=5, **style.UNSTABLE
@@ -91,7 +92,7 @@ def _map(
     ax.plot(1e3 * onset["spacing_m"], onset[f"best_{name}_force_N"], zorder=4, **BEST)
     ax.set(yscale="log", xlim=x[[0, -1]], ylim=y[[0, -1]])
     ax.set(xlabel="Spacing (mm)", ylabel="Force $F_\\mathrm{max}$ (N)")
-    sweep.logarithmic(ax.yaxis)
+    plots.logarithmic(ax.yaxis)
 
 
 def _edges(centres: np.ndarray) -> np.ndarray:
@@ -101,31 +102,31 @@ def _edges(centres: np.ndarray) -> np.ndarray:
                  centres[-1] + gaps[-1] / 2]  # fmt: skip
 
 
-def _bar(part: SubFigure, ax: Axes, floors: pd.DataFrame, name: str) -> None:
-    """The colour scale, with its ticks on the left and the floors across it and on the right."""
+def _bar(part: SubFigure, ax: Axes, baselines: pd.DataFrame, name: str) -> None:
+    """The colour scale, with its ticks on the left and the baselines across it and on the right."""
     bar = part.colorbar(ax.collections[0], ax=ax, pad=0.02, aspect=22)
     bar.ax.yaxis.set_ticks_position("left")
     bar.ax.yaxis.set_label_position("left")
-    bar.set_label(sweep.TOTALS[name])
+    bar.set_label(plots.TOTALS[name])
     bar.outline.set_linewidth(0.4)
-    sweep.floors(bar.ax, floors, name, zorder=3, color="white", lw=1.0)
+    plots.baselines(bar.ax, baselines, name, zorder=3, color="white", lw=1.0)
 
 
 def _over_buckling(
-    ax: Axes, ridge: pd.DataFrame, floors: pd.DataFrame, name: str, colour: dict
+    ax: Axes, ridge: pd.DataFrame, baselines: pd.DataFrame, name: str, colour: dict
 ) -> None:
     """Points over B, joined up to the first buckled run: past it neighbours have little to do with
     each other, and lines would hide the points."""
     ax.axvline(1.0, color=style.INK, lw=1.0, zorder=1)
-    sweep.lines(ax, ridge, "buckling_number", name, colour, ls="", ms=2.0)
+    plots.lines(ax, ridge, "buckling_number", name, colour, ls="", ms=2.0)
     stable = ridge[ridge["status"] == "ok"].sort_values("buckling_number")
     for spacing, frame in stable.groupby("spacing_m"):
         joined = frame[: (frame["buckling_number"] < 1.0).sum() + 1]
         ax.plot(joined["buckling_number"], joined[name], lw=0.6, color=colour[spacing])
-    ax.set(xscale="log", xlabel=f"Buckling number {sweep.BUCKLING}")
-    sweep.scale(ax, ridge, floors, name)
-    sweep.logarithmic(ax.xaxis)
-    sweep.floors(ax, floors, name)
+    ax.set(xscale="log", xlabel=f"Buckling number {plots.BUCKLING}")
+    plots.scale(ax, ridge, baselines, name)
+    plots.logarithmic(ax.xaxis)
+    plots.baselines(ax, baselines, name)
 
 
 def _onset(ax: Axes, onset: pd.DataFrame, colour: dict) -> None:
@@ -138,22 +139,22 @@ def _onset(ax: Axes, onset: pd.DataFrame, colour: dict) -> None:
             1e3 * row.spacing_m, row.onset_B, bar, elinewidth=0.7, color=colour[row.spacing_m],
             gid="onset", **ONSET,
         )  # fmt: skip
-    ax.set(yscale="log", xlabel="Spacing (mm)", ylabel=f"Onset {sweep.BUCKLING}")
+    ax.set(yscale="log", xlabel="Spacing (mm)", ylabel=f"Onset {plots.BUCKLING}")
     ax.set_xlim(_edges(1e3 * np.array(list(colour)))[[0, -1]])
     low, high = ax.get_ylim()
     ax.set_ylim(min(low, 0.45), max(high, 2.2))  # room for ticks about 1
-    sweep.logarithmic(ax.yaxis)
-    ax.set_title(rf"$\mathbf{{e}}$   Drop of {sweep.TOTALS['c_nl']}", loc="left")
+    plots.logarithmic(ax.yaxis)
+    ax.set_title(rf"$\mathbf{{e}}$   Drop of {plots.TOTALS['c_nl']}", loc="left")
 
 
 def _key(part: SubFigure, ridge: pd.DataFrame) -> None:
     handles = {
         "constant deflection (Eq. 3)": Line2D([], [], **REFERENCE),
-        f"{sweep.BUCKLING} = 1": Line2D([], [], **CRITICAL),
+        f"{plots.BUCKLING} = 1": Line2D([], [], **CRITICAL),
         "best force of a spacing": Line2D([], [], **BEST),
-        f"onset that counts as at {sweep.BUCKLING} = 1": Patch(**BAND),
+        f"onset that counts as at {plots.BUCKLING} = 1": Patch(**BAND),
     }
-    handles |= sweep.key(ridge)
+    handles |= plots.key(ridge)
     if len(ridge) < ridge["spacing_m"].nunique() * ridge["force_N"].nunique():
         handles["not run"] = Patch(fc=NOT_RUN)
     part.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)

@@ -13,9 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import panels as parts
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots, style
 
 TRAINING = {"marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "lw": 0.8, "ls": (0, (4, 2))}
 TEST = {"marker": "o", "ms": 2.4}
@@ -29,7 +27,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
 
     Args:
         tables: "robustness" (`tables.study`), "robustness_alpha" (`robustness.alphas`) and
-            "robustness_floors" (`tables.floors`, of the first seed).
+            "robustness_baselines" (`tables.input_baselines`, of the first seed).
         setup: "described" or "published".
         path: of the figure; PNG and PDF are written beside each other.
 
@@ -39,29 +37,29 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: a table has no run of this setup.
     """
-    seeds = sweep.rows_of(tables["robustness"], "robustness", setup)
-    alphas = sweep.rows_of(tables["robustness_alpha"], "robustness_alpha", setup)
-    floors = tables["robustness_floors"]
-    colour = sweep.colours(seeds["n"])
+    seeds = plots.rows_of(tables["robustness"], "robustness", setup)
+    alphas = plots.rows_of(tables["robustness_alpha"], "robustness_alpha", setup)
+    baselines = tables["robustness_baselines"]
+    colour = plots.colours(seeds["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 122.0)
         rows = figure.subfigures(2, 1)
         style.letter(rows[0], "a", f"Seeds of the input ({setup} setup)")
-        _panels(rows[0], _seeds, seeds, colour, floors)
+        _panels(rows[0], _seeds, seeds, colour, baselines)
         style.letter(rows[1], "b", f"Ridge penalty, first seed ({setup} setup)")
-        _panels(rows[1], _alphas, alphas, colour, floors)
+        _panels(rows[1], _alphas, alphas, colour, baselines)
         unstable = any((frame["status"] == "unstable").any() for frame in (seeds, alphas))
-        parts.key(figure, _handles(colour, unstable))
+        panels.key(figure, _handles(colour, unstable))
         style.save(figure, path)
     return figure
 
 
-def _panels(part: SubFigure, panel, rows: pd.DataFrame, colour: dict, floors) -> None:
+def _panels(part: SubFigure, panel, rows: pd.DataFrame, colour: dict, baselines) -> None:
     """One axes for C_nl and one for C_m, on the one scale that all four have."""
-    for ax, (name, symbol) in zip(part.subplots(1, 2), sweep.TOTALS.items(), strict=True):
+    for ax, (name, symbol) in zip(part.subplots(1, 2), plots.TOTALS.items(), strict=True):
         panel(ax, rows, name, colour)
-        ax.set(ylabel=f"{parts.CAPACITIES[name]} {symbol}", ylim=(0.0, 1.0))
-        sweep.floors(ax, floors, name)
+        ax.set(ylabel=f"{panels.CAPACITIES[name]} {symbol}", ylim=(0.0, 1.0))
+        plots.baselines(ax, baselines, name)
 
 
 def _seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
@@ -122,4 +120,4 @@ def _handles(colour: dict, unstable: bool) -> dict[str, Line2D]:
     handles["test ± standard error"] = Line2D([], [], color=style.INK, **TEST)
     handles["mean ± sd of seeds"] = Line2D([], [], color=style.INK, **MEAN)
     handles["training"] = Line2D([], [], color=style.INK, **TRAINING)
-    return handles | parts.floor_and_unstable(unstable)
+    return handles | panels.baseline_and_unstable(unstable)

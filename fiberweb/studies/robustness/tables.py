@@ -18,7 +18,7 @@ def alphas(
 
     Args:
         response_paths: files with the attr ``run``.
-        choices: of each path, see `fiberweb.studies.points.Point`.
+        choices: of each path, see `fiberweb.studies.base.Point`.
         alpha: ridge penalties, of alpha |w|^2 against the sum of squares of the training part.
 
     Returns:

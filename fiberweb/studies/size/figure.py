@@ -13,8 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import style
+from fiberweb.figures import plots, style
 
 RUN = ["force_choice", "spacing_m", "n"]
 MARKERS = {  # the shorter step lies upon the longer one
@@ -32,7 +31,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     steps, for each N that was.
 
     Args:
-        tables: "size" (`tables.study`) and "ridge_floors" (`tables.floors`). An unstable run is
+        tables: "size" (`tables.study`) and "ridge_baselines" (`tables.input_baselines`). An unstable run is
             an X.
         setup: "described" or "published"; rows of the other one are left out.
         path: of the figure; both suffixes are written beside each other.
@@ -43,12 +42,12 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
     Raises:
         ValueError: the table has no run of this setup.
     """
-    size = sweep.rows_of(tables["size"], "size", setup).sort_values("time_step_s")
+    size = plots.rows_of(tables["size"], "size", setup).sort_values("time_step_s")
     repeated = size[size.duplicated(RUN, keep=False)]
     twice = sorted(repeated["n"].unique())
     over_size = size["n"].nunique() > 1 or not twice
-    floors = tables["ridge_floors"]
-    colour = sweep.colours(size["spacing_m"])
+    baselines = tables["ridge_baselines"]
+    colour = plots.colours(size["spacing_m"])
     letters = iter("abcdefgh")
     with style.applied():
         figure = style.figure(style.DOUBLE, 76.0 * (over_size + len(twice)))
@@ -57,15 +56,15 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
             part = next(parts)
             rows = size.drop_duplicates(RUN, keep="last")
             axes = part.subplots(1, 2)
-            for ax, name in zip(axes, sweep.TOTALS, strict=True):
+            for ax, name in zip(axes, plots.TOTALS, strict=True):
                 _over_size(ax, _chosen_for(name, rows), name, colour)
-            sweep.spacing_bar(part, axes, colour)
-            _finish(part, floors, rows, {}, setup, letters)
+            plots.spacing_bar(part, axes, colour)
+            _finish(part, baselines, rows, {}, setup, letters)
         for n in twice:
             part, rows = next(parts), repeated[repeated["n"] == n]
-            for ax, name in zip(part.subplots(1, 2), sweep.TOTALS, strict=True):
+            for ax, name in zip(part.subplots(1, 2), plots.TOTALS, strict=True):
                 handles = _over_spacing(ax, _chosen_for(name, rows), name)
-            _finish(part, floors, rows, handles, f"{n}×{n}, {setup}", letters)
+            _finish(part, baselines, rows, handles, f"{n}×{n}, {setup}", letters)
         style.save(figure, path)
     return figure
 
@@ -76,7 +75,7 @@ def _chosen_for(name: str, rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _over_size(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
-    sweep.lines(ax, rows, "n", name, colour, ASIDE)
+    plots.lines(ax, rows, "n", name, colour, ASIDE)
     sizes = sorted(rows["n"].unique())
     ax.set(xticks=sizes, xlim=(sizes[0] - 1.0, sizes[-1] + 1.0))
     ax.set_xlabel("Fibres in each direction, $N$")
@@ -90,7 +89,7 @@ def _over_spacing(ax: Axes, rows: pd.DataFrame, name: str) -> dict[str, Line2D]:
         step = f"{1e6 * one['time_step_s'].median():.3g} µs"
         unstable = one["status"] == "unstable"
         one = one.assign(spacing_mm=1e3 * one["spacing_m"])
-        sweep.points(ax, one, "spacing_mm", name, ls="", mew=0.8, **marker)
+        plots.points(ax, one, "spacing_mm", name, ls="", mew=0.8, **marker)
         handles[f"step of {step}"] = Line2D([], [], ls="", mew=0.8, **marker)
         style.mark_unstable(ax, list(one.loc[unstable, "spacing_mm"]))
     ax.set_xlabel("Spacing (mm)")
@@ -98,14 +97,14 @@ def _over_spacing(ax: Axes, rows: pd.DataFrame, name: str) -> dict[str, Line2D]:
 
 
 def _finish(
-    part: SubFigure, floors: pd.DataFrame, rows: pd.DataFrame, handles: dict, of: str,
+    part: SubFigure, baselines: pd.DataFrame, rows: pd.DataFrame, handles: dict, of: str,
     letters: Iterator[str],
 ) -> None:  # fmt: skip
-    """Scales, floors, titles and the key of one row of panels."""
-    for ax, name in zip(part.axes, sweep.TOTALS):
-        sweep.scale(ax, rows, floors, name)
-        title = f"{sweep.TOTALS[name]} at the best force for it ({of} setup)"
+    """Scales, baselines, titles and the key of one row of panels."""
+    for ax, name in zip(part.axes, plots.TOTALS):
+        plots.scale(ax, rows, baselines, name)
+        title = f"{plots.TOTALS[name]} at the best force for it ({of} setup)"
         ax.set_title(rf"$\mathbf{{{next(letters)}}}$   {title}", loc="left")
-        sweep.floors(ax, floors, name)
-    handles = handles | sweep.key(rows)
+        plots.baselines(ax, baselines, name)
+    handles = handles | plots.key(rows)
     part.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)

@@ -15,9 +15,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
-from fiberweb.figures import axes as sweep
-from fiberweb.figures import panels as parts
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots, style
 from fiberweb.model.network import Network, crosshatch, polygon
 from fiberweb.model.scene import Scene
 
@@ -34,26 +32,15 @@ TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms"
 TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick": 0.7}
 
 
-def draw(
-    table: pd.DataFrame,
-    curves: pd.DataFrame,
-    floors: pd.DataFrame | None,
-    traces: xr.Dataset | None,
-    setup: str,
-    path: str | Path,
-) -> Figure:
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
     """Draw Fig. 1 for one setup and write it as PNG and PDF.
 
     Args:
-        table: from `tables.study`; rows of other setups are left out. A run whose status is
-            "unstable" is drawn as an X.
-        curves: from `tables.curves`, of the same runs.
-        floors: from `tables.floors`, or None.
-        traces: ``target`` and ``prediction`` (trace, time), ``c`` (trace), with the trace names
-            ("P4" for P_4(u(t)), "200 ms" for recall) and time in s as coordinates, NaN where a
-            target's test part has not begun; attr ``scene`` names the network. None, or nothing
-            but NaN, leaves panel d out.
-        setup: "described" or "published".
+        given: "topology" (`tables.study`; a run whose status is "unstable" is drawn as an X),
+            "topology_curves" (`tables.curves`), "topology_baselines" (`tables.input_baselines`) and
+            "topology_traces" (`traces.example_traces`), which leaves panel d out if it has
+            nothing or nothing but NaN.
+        setup: "described" or "published"; rows of the other one are left out.
         path: of the figure; both suffixes are written beside each other.
 
     Returns:
@@ -62,10 +49,11 @@ def draw(
     Raises:
         ValueError: the table has no run of this setup.
     """
-    table, curves = (frame[frame["setup"] == setup] for frame in (table, curves))
-    if table.empty:
-        raise ValueError(f"the topology table has no run of the {setup} setup to draw")
-    if traces is not None and not _known(traces).any():
+    table = plots.rows_of(given["topology"], "topology", setup)
+    curves, baselines, traces = (
+        given[f"topology_{name}"] for name in ("curves", "baselines", "traces")
+    )
+    if not traces.data_vars or not _known(traces).any():
         traces = None  # an unstable run has no prediction to show
     present = [name for name in TITLES if (table["topology"] == name).any()]
     heights = [30.0] + [46.0] * len(present) + ([54.0] if traces is not None else [])
@@ -73,14 +61,14 @@ def draw(
         figure = style.figure(style.DOUBLE, sum(heights))
         rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
         letters = iter("abcd")
-        colour = sweep.colours(table["n"])
+        colour = plots.colours(table["n"])
         style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
         _networks(rows[0], table, setup)
         for row, topology in zip(rows[1:], present, strict=False):
             style.letter(row, next(letters), f"{TITLES[topology]} ({setup} setup)")
             runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
-            _capacities(row, runs, points, floors, colour)
-        parts.key_beside_title(rows[1], _marks(table, floors))
+            _capacities(row, runs, points, baselines, colour)
+        panels.key_beside_title(rows[1], _marks(table, baselines))
         if traces is not None:
             title = f"Example computations{_network_name(traces)} ({setup} setup)"
             style.letter(rows[-1], next(letters), title)
@@ -145,7 +133,7 @@ def _capacities(
     part: SubFigure,
     runs: pd.DataFrame,
     points: pd.DataFrame,
-    floors: pd.DataFrame | None,
+    baselines: pd.DataFrame | None,
     colour: dict,
 ) -> None:
     """c over order and over lag for each N, then the totals over N."""
@@ -163,26 +151,26 @@ def _capacities(
     by_lag.set(xlabel="Recall lag (s)", xlim=(0, points["at"][points["target"] == "lag"].max()))
     by_lag.tick_params(labelleft=False)
     shades = {n: colour[n] for n in sizes}
-    sweep.colour_bar(part, [by_order, by_lag], shades, "$N$", pad=0.01, fraction=0.04, aspect=14)
-    for ax, (name, symbol) in zip((nonlinear, memory), sweep.TOTALS.items(), strict=True):
+    plots.colour_bar(part, [by_order, by_lag], shades, "$N$", pad=0.01, fraction=0.04, aspect=14)
+    for ax, (name, symbol) in zip((nonlinear, memory), plots.TOTALS.items(), strict=True):
         _total(ax, runs, name, colour)
         ax.set(xlabel="$N$", ylabel=symbol, xticks=sizes)
     for ax in (by_order, by_lag, nonlinear, memory):
         ax.set_ylim(*CAPACITY_AXIS)
-    if floors is not None:
-        for ax, name in zip((nonlinear, memory), sweep.TOTALS, strict=True):
-            sweep.floors(ax, floors, name)
+    if baselines is not None:
+        for ax, name in zip((nonlinear, memory), plots.TOTALS, strict=True):
+            plots.baselines(ax, baselines, name)
 
 
-def _marks(table: pd.DataFrame, floors: pd.DataFrame | None) -> dict[str, Line2D]:
+def _marks(table: pd.DataFrame, baselines: pd.DataFrame | None) -> dict[str, Line2D]:
     """Legend entries of the totals."""
     handles = {
         "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
         "training": Line2D([], [], **TRAINING),
     }
-    entries = parts.floor_and_unstable((table["status"] == "unstable").any())
-    if floors is None:
-        del entries[sweep.INPUT_ALONE]
+    entries = panels.baseline_and_unstable((table["status"] == "unstable").any())
+    if baselines is None:
+        del entries[plots.INPUT_ALONE]
     return handles | entries
 
 
@@ -214,16 +202,16 @@ def _traces(part: SubFigure, traces: xr.Dataset) -> None:
     for ax, name in zip(axes.T.ravel(), traces["trace"].values, strict=False):
         one = traces.sel(trace=name)
         legendre = str(name).startswith("P")
-        ax.plot(time[shown], one["prediction"].values[shown], **parts.PREDICTION)
-        ax.plot(time[shown], one["target"].values[shown], **parts.TARGET)
+        ax.plot(time[shown], one["prediction"].values[shown], **panels.PREDICTION)
+        ax.plot(time[shown], one["target"].values[shown], **panels.TARGET)
         title = f"$P_{{{name[1:]}}}(u(t))$" if legendre else f"$u(t - {name.split()[0]}$ ms$)$"
         ax.set_title(f"{title}   $c$ = {float(one['c']):.3f}")
         ax.set(ylim=(-1.15, 1.15), xlim=(start, start + TRACE_SECONDS))
     for ax in axes[-1]:
         ax.set_xlabel("Time (s)")
-    lines = {"target $z$": parts.TARGET, "prediction $\\hat{z}$": parts.PREDICTION}
+    lines = {"target $z$": panels.TARGET, "prediction $\\hat{z}$": panels.PREDICTION}
     handles = {label: Line2D([], [], **line) for label, line in lines.items()}
-    parts.key_beside_title(part, handles)
+    panels.key_beside_title(part, handles)
 
 
 def _known(traces: xr.Dataset) -> np.ndarray:

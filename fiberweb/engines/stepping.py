@@ -1,0 +1,123 @@
+"""What the planar kernels share beside energy: the step, outer forces, and what is recorded."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fiberweb.engines.base import RUNAWAY, Numerics, fitted_step, readout_arrays
+from fiberweb.engines.jit import kernel
+from fiberweb.engines.layout import Interleaving, Layout, packed
+from fiberweb.model.mesh import Mesh
+
+
+class Stepping(NamedTuple):
+    """How the kernels step; neighbours in their arrays are `stride` apart."""
+
+    step: float  # s
+    per_sample: int  # steps between samples
+    speed_limit: float  # m/s: a faster node has left the physics
+    stride: int
+
+
+class Forcing(NamedTuple):
+    """Drive and tension."""
+
+    drive: np.ndarray  # spline coefficients of u, (intervals, 4)
+    drive_rate: float  # Hz
+    ramp_time: float  # s, in which the pull grows
+    nodes: np.ndarray  # those that are driven, (driven,)
+    load_x: np.ndarray  # N, on them for u = 1
+    load_y: np.ndarray
+    pull_x: np.ndarray  # N, (n,)
+    pull_y: np.ndarray
+
+
+class Readouts(NamedTuple):
+    """What is recorded, and from where."""
+
+    nodes: np.ndarray  # (readouts, 4)
+    weights: np.ndarray
+    rest_x: np.ndarray  # m, (n,)
+    rest_y: np.ndarray
+
+
+def stepping(mesh: Mesh, numerics: Numerics, order: Interleaving) -> Stepping:
+    """The step of a run, shortened to divide a sample."""
+    step, per_sample = fitted_step(mesh.scene, numerics.time_step)
+    return Stepping(step, per_sample, RUNAWAY * mesh.scene.wave_speed, order.stride)
+
+
+def forcing(mesh: Mesh, layout: Layout, order: Interleaving) -> Forcing:
+    """Outer forces in the order of the kernels."""
+    load_x, load_y = layout.load_x[order.nodes], layout.load_y[order.nodes]
+    driven = np.flatnonzero(load_x**2 + load_y**2)
+    pull = packed(layout.pull_x[order.nodes], layout.pull_y[order.nodes])
+    scene = mesh.scene
+    return Forcing(
+        mesh.drive, scene.drive_rate, scene.tension_ramp, driven, load_x[driven], load_y[driven],
+        *pull,
+    )  # fmt: skip
+
+
+def readouts(mesh: Mesh, layout: Layout, order: Interleaving) -> Readouts:
+    """What is read, in the order of the kernels."""
+    nodes, weights = readout_arrays(mesh)
+    rest = packed(layout.x[order.nodes], layout.y[order.nodes])
+    return Readouts(order.place[layout.at[nodes]], weights, *rest)
+
+
+def displace(state, mesh: Mesh, layout: Layout, order: Interleaving) -> None:
+    """Add what a run starts with to the positions of a state."""
+    at = order.place[layout.at]
+    state.x[at] += mesh.start[:, 0]
+    state.y[at] += mesh.start[:, 1]
+
+
+@kernel
+def drive_value(coefficients, rate, time):
+    """The input's spline at one time."""
+    i = min(int(time * rate), coefficients.shape[0] - 1)
+    s = time - i / rate
+    c = coefficients[i]
+    return ((c[0] * s + c[1]) * s + c[2]) * s + c[3]
+
+
+@kernel
+def ramp_at(time, ramp_time):
+    """Share of the pull that acts at one time."""
+    return min(1.0, time / ramp_time) if ramp_time > 0.0 else 1.0
+
+
+@kernel
+def apply_pull(forcing, ramp, outer_x, outer_y):
+    """Set the outer force of every node to a share of its pull."""
+    for i in range(outer_x.shape[0]):
+        outer_x[i] = ramp * forcing.pull_x[i]
+        outer_y[i] = ramp * forcing.pull_y[i]
+
+
+@kernel
+def record(state, readouts, half, out):
+    """Displacement of the readouts at a whole step, from positions half a step ahead."""
+    x, y, vx, vy = state.x, state.y, state.vx, state.vy
+    nodes, weights, rest_x, rest_y = readouts
+    for r in range(nodes.shape[0]):
+        ux = 0.0
+        uy = 0.0
+        for k in range(nodes.shape[1]):
+            i = nodes[r, k]
+            ux += weights[r, k] * (x[i] - half * vx[i] - rest_x[i])
+            uy += weights[r, k] * (y[i] - half * vy[i] - rest_y[i])
+        out[r, 0] = ux
+        out[r, 1] = uy
+
+
+@kernel
+def in_bounds(vx, vy, limit):
+    """Whether every velocity is finite and below the limit."""
+    for i in range(vx.shape[0]):
+        if not (abs(vx[i]) < limit and abs(vy[i]) < limit):
+            return False
+    return True

@@ -1,0 +1,77 @@
+"""What the authors' code did, each fact with its source; how it cut fibres is in `authors_mesh`.
+
+Facts only, read off their public repository (github.com/NaughtonLab/ReservoirFiberNetworks), and
+none of its code. SI units. Where no script is named, all of their simulation scripts agree.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+# Simulation scripts: numpy's legacy generator, and 100 s of knots at 5 Hz with both ends.
+SEED = 1234
+KNOTS = 501
+
+STEP = 5e-6  # s; simulation scripts
+# Simulation scripts. Elements: at least so many on a fibre, but half as long, and no such least
+# number, at spacings of 20 and 30 mm. Load: nodes about the middle and their shares of the force;
+# a negative index skews what was meant to be symmetric.
+ELEMENT = 10e-3  # m
+LEAST_ELEMENTS = 50
+LOAD = {-2: 0.1875, -1: 0.125, 0: 0.125, 1: 0.1875, 2: 0.375}
+
+SKIPPED_FRAMES = 300  # scoring script of the polygons, which drops these first ones
+SHUFFLE_SEED = 42  # feature selection script: random_state of sklearn's train_test_split
+
+# Simulation scripts of crosshatch and polygon: what a scene leaves open. The damper's 10 /s act on
+# velocity and, by its units, as 40 /s on rotation; a stiff pin and the Laplace filter of order 6
+# on the crosshatch only, a softer pin on the polygon.
+PHYSICS = {
+    "crosshatch": dict(
+        crossing_stiffness=1e6, crossing_damping=0.0, damping=10.0, filter_order=6, ends="sliding"
+    ),
+    "polygon": dict(
+        crossing_stiffness=1e3, crossing_damping=0.0, damping=10.0, filter_order=0, ends="pinned"
+    ),
+}
+
+# Feature selection script, whose readouts near the springs were chosen by hand: for each row the
+# first column of its crossings, and the first section of its midpoints; by N. Columns of vertical
+# midpoints are alike.
+SPRINGS_CROSSINGS = {4: (3, 1, 1, 0), 6: (5, 4, 3, 2, 1, 0)}
+SPRINGS_MIDPOINTS = {4: (3, 2, 1, 1), 6: (5, 5, 3, 3, 2, 1)}
+FEATURES_FORCE = 0.2  # N; the same script
+
+# All of their lists of forces hold Eq. 3 with this for 48 delta EI, rounded in two ways.
+EQ3_PRODUCT = 50e-6  # N m^3
+
+
+def reference_force(spacing: float) -> float:
+    """Eq. 3 as their simulation scripts round it (N), s in m: to ten digits after the point, so
+    that the same force is the same run."""
+    return np.round(EQ3_PRODUCT / spacing**3, 10)
+
+
+def listed_force(force: float) -> float:
+    """A force (N) as their lists of forces give it: to six digits."""
+    return float(f"{force:.6g}")
+
+
+# Force-spacing script: spacings, and the reference force of each beside four more.
+EQ3_SPACINGS = [round(0.02 + 0.01 * i, 3) for i in range(14)]  # m
+FORCES = sorted(
+    [listed_force(EQ3_PRODUCT / spacing**3) for spacing in EQ3_SPACINGS] + [5.0, 3.75, 2.5, 1.25]
+)  # N
+
+# Size script: the best force of each spacing, for C_nl and for C_m (N).
+SIZE_C_NL_FORCES = [
+    3.75, 1.25, 0.78125, 0.4, 0.231481, 0.231481, 0.145773, 0.145773, 0.0976562, 0.0976562,
+    0.0685871, 0.05, 0.05, 0.0375657,
+]  # fmt: skip
+SIZE_C_M_FORCES = [
+    2.5, 1.25, 0.78125, 0.4, 0.231481, 0.145773, 0.145773, 0.0685871, 0.0685871, 0.05, 0.78125,
+    0.78125, 0.4, 1.25,
+]  # fmt: skip
+
+# Pretension script: the force at each spacing from 50 to 100 mm (N).
+PRETENSION_FORCES = [0.4, 0.231481, 0.0976562, 0.0976562, 0.05, 0.05]

@@ -1,0 +1,11 @@
+"""Animations of the networks about B = 1."""
+
+from logs import to_log
+
+from fiberweb import products
+from fiberweb.studies.buckling.figure import animate
+
+to_log(snakemake.log[0])
+responses = [products.read(path) for path in snakemake.input.responses]
+params = snakemake.params
+animate(responses, params.seconds, params.frame_rate, snakemake.output)

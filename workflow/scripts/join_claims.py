@@ -1,0 +1,12 @@
+"""The paper's claims, what was computed in each setup beside one another."""
+
+from pathlib import Path
+
+from logs import to_log
+
+from fiberweb import products
+from fiberweb.claims.judge import join
+
+to_log(snakemake.log[0])
+by_setup = {Path(path).parent.name: products.read(path) for path in snakemake.input.claims}
+products.write(join(by_setup), snakemake.output[0])

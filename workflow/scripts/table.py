@@ -1,0 +1,17 @@
+"""One table of a study in one setup."""
+
+from logs import to_log
+
+from fiberweb import products
+
+to_log(snakemake.log[0])
+source, params = snakemake.input, snakemake.params
+given = dict(params.options)
+if capacities := source.get("capacities"):
+    given["capacity_paths"] = list(capacities)
+if responses := source.get("responses"):
+    given |= {"response_path": responses[0]} if params.single else {"response_paths": list(responses)}
+tables = source.tables if isinstance(source.tables, list) else [source.tables]
+print(params.make, *map(str, tables))
+made = products.function(params.make)(*map(products.read, tables), **given)
+products.write(made, snakemake.output[0])
