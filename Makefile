@@ -14,10 +14,10 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published accuracy smoke test bench env clean
+.PHONY: help figures published published_all accuracy smoke test docs bench env clean
 
 help: ## list these targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
 
 # Targets stand before the options: an option that takes a list swallows them.
 figures: $(STAMP) ## every figure of the paper and the claims table
@@ -25,6 +25,12 @@ figures: $(STAMP) ## every figure of the paper and the claims table
 
 published: $(STAMP) ## the same, set up as the authors' code was
 	$(SNAKEMAKE) published --cores $(CORES) $(AUTHORS)
+
+published_all: $(STAMP) ## the same with every run of the authors: for a cluster, or a night
+	$(SNAKEMAKE) published --cores $(CORES) --config published_all=True $(TABLES:%=published_tables=%)
+
+docs: $(STAMP) ## the tables of numbers in docs/, from results/tables
+	$(VENV)/bin/python -m fiberweb.tools.docs
 
 accuracy: $(STAMP) ## error against cost, the model ladder and the limits of the step
 	$(SNAKEMAKE) accuracy --cores $(CORES)

@@ -3,7 +3,7 @@
 #
 #   snakemake --cores 2 figures      the paper's text (setup `described`)
 #   snakemake --cores 2 published    the authors' code (setup `published`)
-#   snakemake published --config published_all=true --profile profiles/slurm      every run of the
+#   snakemake published --config published_all=True --profile profiles/slurm      every run of the
 #                                    authors, on a cluster
 #   snakemake --cores 2 topology     one study alone
 #   snakemake --cores 2 claims       the paper's claims in both setups, side by side

@@ -47,10 +47,11 @@ class General(Section):
 
     @model_validator(mode="after")
     def _studies_agree(self) -> Self:
-        lab(self, "described").check_duration("scene.duration", self.scene.duration)
+        here = lab(self, "described")
         for name in studies.STUDIES:
             if check := getattr(studies.load(name), "check", None):
-                check(getattr(self, name), lab(self, "described"))
+                check(getattr(self, name), here)
+        here.check_duration("scene.duration", self.scene.duration)
         return self
 
 

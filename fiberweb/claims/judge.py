@@ -21,9 +21,10 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
-ALLOWANCE = 0.03  # in a capacity
-# of a capacity: losing a quarter is a "substantial" decay or a "sharp" drop. Of the authors' own
-# table C_m falls by .53 at their "substantially" and by .10 at their "plateau".
+# in a capacity; our own choice: the paper gives no errors
+ALLOWANCE = 0.03
+# of a capacity: losing a quarter is a "substantial" decay or a "sharp" drop; our own choice. Of the
+# authors' own table C_m falls by .53 at their "substantially" and by .10 at their "plateau".
 SUBSTANTIAL = 0.25
 CROSSHATCHES = (2, 4, 6, 8, 10, 12)
 
@@ -32,7 +33,7 @@ COLUMNS = ("id", "figure", "kind", "statement", "paper", "value", "verdict")
 HOLDS, DIFFERS, CALIBRATED = "holds", "differs", "calibrated"
 NOT_APPLICABLE, NOT_COMPUTED = "not applicable", "not computed"
 FITTED = {("described", claim) for claim in ("T1", "T2", "T3", "T4")}
-ROUND_OFF = 1e-9
+ROUND_OFF = 1e-9  # in a capacity; a limit itself is inside
 
 
 class NotComputed(Exception):

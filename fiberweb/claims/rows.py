@@ -26,14 +26,14 @@ def stable(table: pd.DataFrame) -> pd.DataFrame:
     return table[table["status"] == "ok"]
 
 
-def complete(found: pd.DataFrame, columns: Iterable, label: str) -> pd.DataFrame:
-    """The table with these columns; NotComputed at the first value that is missing."""
-    found = found.reindex(columns=list(columns))
-    missing = found.isna()
+def complete(table: pd.DataFrame, columns: Iterable, label: str) -> pd.DataFrame:
+    """A table over spacings with these columns; NotComputed at the first value that is missing."""
+    table = table.reindex(columns=list(columns))
+    missing = table.isna()
     if missing.any(axis=None):
         spacing, column = missing.stack().idxmax()
         raise NotComputed(f"{mm(spacing)}, {label.format(column)} missing or unstable")
-    return found
+    return table
 
 
 def falls(c: Iterable[float]) -> bool:

@@ -2,20 +2,113 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from fiberweb.engines.energy import (
+    enter_sample,
+    joint_energy,
+    joint_power,
+    pull_work,
+    squared_speed,
+)
 from fiberweb.engines.jit import kernel, summing
+from fiberweb.engines.laplace import REACH
+
+
+class State(NamedTuple):
+    """What moves: over nodes (n,), then over elements (n - stride,)."""
+
+    x: np.ndarray  # m, half a step ahead of the velocities' time; so is the angle
+    y: np.ndarray
+    vx: np.ndarray  # m/s
+    vy: np.ndarray
+    angle: np.ndarray
+    omega: np.ndarray  # 1/s
+    cosine: np.ndarray  # of the angle
+    sine: np.ndarray
+
+
+class Rods(NamedTuple):
+    """What the passes multiply with: over nodes, then over elements, then the same everywhere."""
+
+    kick_x: np.ndarray  # step over mass
+    kick_y: np.ndarray
+    bend: np.ndarray  # EI over the span of a node, N m
+    half_over_voronoi: np.ndarray  # 1/m
+    edge: np.ndarray  # rest length, m
+    over_edge: np.ndarray  # 1 / edge on elements and 0 in gaps, which carries all that gaps lack
+    spin_decay: np.ndarray  # of angular velocity over a step, at rest
+    stretched: np.ndarray  # minus its logarithm's change by dilatation
+    axial: float  # EA, N
+    shear: float  # alpha_c G A, N
+    over_inertia: float  # 1 / (rho I), m / kg
+    decay: float  # of a free velocity over a step
+
+
+class Spin(NamedTuple):
+    """What the ledger needs of the elements' turning."""
+
+    inertia: np.ndarray  # kg m^2, 0 in gaps
+    damping: np.ndarray  # rate, 1/s
+
+
+class Scratch(NamedTuple):
+    """What the passes hand on: over elements, then over nodes."""
+
+    force_x: np.ndarray
+    force_y: np.ndarray
+    length: np.ndarray
+    acceleration: np.ndarray  # angular, from shear and stretching
+    couple: np.ndarray
+    outer_x: np.ndarray  # pull, drive and crossings
+    outer_y: np.ndarray
+    difference: np.ndarray  # of the filter
+
+
+class Velocities(NamedTuple):
+    """A copy of all velocities."""
+
+    vx: np.ndarray
+    vy: np.ndarray
+    omega: np.ndarray
+
+
+@kernel
+def pass_views(state, scratch, rods, s):
+    """The parts of the arrays that each pass runs over, in the order of its arguments.
+
+    Made once a call: at a few hundred elements they would cost a fifth of the step. They leave
+    out all ghosts before and after the chain but those that an element reaches.
+    """
+    x, y, vx, vy, angle, omega, c, sine = state
+    fx, fy, length, alpha, couple, outer_x, outer_y, _ = scratch
+    kick_x, kick_y, bend, half_over_voronoi, edge, over_edge, spin_decay, stretched = rods[:8]
+    low, high = (REACH - 1) * s, x.shape[0] - (REACH - 1) * s
+    a, b = slice(low, high - s), slice(low + s, high)
+    inner, before = slice(b.start, a.stop), slice(low, a.stop - s)
+    return (
+        (x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b], omega[a], c[a], sine[a], edge[a],
+         over_edge[a], fx[a], fy[a], length[a], alpha[a]),
+        (angle[before], angle[inner], length[before], length[inner], bend[inner],
+         half_over_voronoi[inner], couple[inner]),
+        (vx[inner], fx[before], fx[inner], outer_x[inner], kick_x[inner]),
+        (vy[inner], fy[before], fy[inner], outer_y[inner], kick_y[inner]),
+        (omega[a], alpha[a], couple[a], couple[b], length[a], over_edge[a], spin_decay[a],
+         stretched[a]),
+        (x[inner], vx[inner]),
+        (y[inner], vy[inner]),
+        (angle[a], omega[a], c[a], sine[a]),
+    )  # fmt: skip
 
 
 @kernel
 def stress_pass(
-    x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, edge, over_edge, axial, shear, over_inertia,
-    fx, fy, length, alpha,
+    x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, edge, over_edge, fx, fy, length, alpha,
+    axial, shear, over_inertia,
 ):  # fmt: skip
-    """Forces in the elements, and the angular acceleration from shear and stretching.
-
-    `over_edge` is 1 / edge on elements and 0 in gaps, which carries all that gaps lack.
-    """
+    """Forces in the elements, and the angular acceleration from shear and stretching."""
     for i in range(fx.shape[0]):
         dx = x1[i] - x0[i]
         dy = y1[i] - y0[i]
@@ -85,11 +178,40 @@ def rotate_pass(angle, omega, c, s, step):
 
 
 @kernel
-def strain_energy(x, y, angle, node_arrays, element_arrays, stride):
+def outer_forces(state, forcing, ledger, ramp, u, outer_x, outer_y):
+    """Pull, drive, and spring and damper of the crossings, at the nodes that have any."""
+    x, y, vx, vy = state.x, state.y, state.vx, state.vy
+    joints, stiffness, damping = ledger.joints, ledger.joint_stiffness, ledger.joint_damping
+    nodes, pull_x, pull_y = forcing.nodes, forcing.pull_x, forcing.pull_y
+    for i in range(nodes.shape[0]):
+        m = nodes[i]
+        outer_x[m] = ramp * pull_x[m]
+        outer_y[m] = ramp * pull_y[m]
+    for j in range(joints.shape[0]):
+        for k in range(2):
+            n = joints[j, k]
+            outer_x[n] = ramp * pull_x[n]
+            outer_y[n] = ramp * pull_y[n]
+    for j in range(joints.shape[0]):
+        a, b = joints[j, 0], joints[j, 1]
+        fx = stiffness[j] * (x[b] - x[a]) + damping[j] * (vx[b] - vx[a])
+        fy = stiffness[j] * (y[b] - y[a]) + damping[j] * (vy[b] - vy[a])
+        outer_x[a] += fx
+        outer_y[a] += fy
+        outer_x[b] -= fx
+        outer_y[b] -= fy
+    for i in range(nodes.shape[0]):
+        m = nodes[i]
+        outer_x[m] += u * forcing.load_x[i]
+        outer_y[m] += u * forcing.load_y[i]
+
+
+@kernel
+def strain_energy(x, y, angle, rods, stride):
     """Elastic energy of the fibres (J): the potential of stretch, and of shear and bending to
     leading order in the stretch, whose factors in PyElastica's equations have none."""
-    bend, half_over_voronoi = node_arrays[4], node_arrays[5]
-    edge, over_edge, _, _, axial, shear, _ = element_arrays
+    bend, half_over_voronoi, edge, over_edge = rods[2:6]
+    axial, shear = rods.axial, rods.shear
     length = np.sqrt((x[stride:] - x[:-stride]) ** 2 + (y[stride:] - y[:-stride]) ** 2)
     total = 0.0
     for i in range(angle.shape[0]):
@@ -123,3 +245,40 @@ def filter_loss(unfiltered, before, filtered, mass):
     for i in range(mass.shape[0]):
         total += 0.5 * mass[i] * (unfiltered[i] - filtered[i]) * (before[i] + filtered[i])
     return total
+
+
+@kernel
+def record_energy(row, state, rods, spin, forcing, readouts, ledger, stepping, ramp):
+    """Fill one row of the energies at a whole step."""
+    vx, vy, omega, half = state.vx, state.vy, state.omega, 0.5 * stepping.step
+    x, y, angle = state.x - half * vx, state.y - half * vy, state.angle - half * omega
+    kinetic = 0.5 * squared_speed(vx, vy, ledger.mass) + 0.5 * squared_spin(omega, spin.inertia)
+    elastic = strain_energy(x, y, angle, rods, stepping.stride) + joint_energy(ledger, x, y)
+    enter_sample(row, ledger, kinetic, elastic, ramp, pull_work(x, y, readouts, forcing))
+
+
+@kernel
+def damper_power(state, spin, ledger):
+    """Power that all dampers take (W)."""
+    omega = state.omega
+    lost = ledger.damping * squared_speed(state.vx, state.vy, ledger.mass)
+    for i in range(omega.shape[0]):
+        lost += spin.inertia[i] * spin.damping[i] * omega[i] * omega[i]
+    return lost + joint_power(ledger, state.vx, state.vy)
+
+
+@kernel
+def add_filter_power(lost, before, kicked, state, spin, ledger, step):
+    """Add to a power (W) what the filter takes away: of leapfrog's kick, that never became work."""
+    lost += filter_loss(kicked.vx, before.vx, state.vx, ledger.mass) / step
+    lost += filter_loss(kicked.vy, before.vy, state.vy, ledger.mass) / step
+    lost += filter_loss(kicked.omega, before.omega, state.omega, spin.inertia) / step
+    return lost
+
+
+@kernel
+def copy_velocities(state, copy):
+    """Keep the velocities of this moment."""
+    copy.vx[:] = state.vx
+    copy.vy[:] = state.vy
+    copy.omega[:] = state.omega

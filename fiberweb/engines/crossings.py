@@ -2,17 +2,51 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.linalg import expm
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from fiberweb.engines.jit import kernel
-from fiberweb.engines.layout import Layout, Strips
+from fiberweb.engines.layout import Interleaving, Layout
 from fiberweb.model.mesh import Mesh
 
 
-def joint_operators(mesh: Mesh, layout: Layout, strip: Strips, step: float):
+class Pairs(NamedTuple):
+    """Crossings of two nodes: operators on their relative motion, each (pairs,)."""
+
+    a: np.ndarray
+    b: np.ndarray
+    p: np.ndarray
+    q: np.ndarray
+    s: np.ndarray
+    share_a: np.ndarray  # of node a in a change of relative velocity
+    share_b: np.ndarray
+
+
+class Groups(NamedTuple):
+    """The other crossings, of any number of nodes."""
+
+    starts: np.ndarray  # of each group in the members, and their end
+    members: np.ndarray  # nodes
+    offsets: np.ndarray  # of each group in the operators, and their end
+    operators: np.ndarray  # P, Q and S of each group, each row by row
+
+
+class Motion(NamedTuple):
+    """Velocities and positions: relative ones of pairs, or those of the members of groups."""
+
+    vx: np.ndarray
+    x: np.ndarray
+    vy: np.ndarray
+    y: np.ndarray
+
+
+def joint_operators(
+    mesh: Mesh, layout: Layout, interleaving: Interleaving, step: float
+) -> tuple[Pairs, Groups]:
     """What a step does to the nodes that meet at a crossing, beyond what it does to all.
 
     With v the velocities before the kick, v* after the kick of all but the crossing, and x the
@@ -24,12 +58,6 @@ def joint_operators(mesh: Mesh, layout: Layout, strip: Strips, step: float):
 
     (times the decay of free velocities): exact for forces constant over the step. Nodes that
     are one point get the mass-weighted mean of v*.
-
-    Returns:
-        For crossings of two nodes, on the relative motion: nodes a and b, p, q, s and the
-        shares of a and b in a change of relative velocity, each (pairs,). For the others: start
-        of each group in members, members (padded node indices), start of each group in the
-        operators, operators (P, Q, S of each group, each row by row).
     """
     pairs, others = [], []
     for nodes, spring, damper in joint_groups(mesh, layout):
@@ -38,19 +66,18 @@ def joint_operators(mesh: Mesh, layout: Layout, strip: Strips, step: float):
             operators = _pair_operators(
                 mass, -spring[0, 1], -damper[0, 1], step, mesh.scene.damping
             )
-            pairs.append((*strip.place[nodes], *operators, *(1.0 - mass / mass.sum())))
+            pairs.append((*interleaving.place[nodes], *operators, *(1.0 - mass / mass.sum())))
         else:
             operators = _group_operators(mass, spring, damper, step, mesh.scene.damping)
-            others.append((strip.place[nodes], operators))
+            others.append((interleaving.place[nodes], operators))
     a, b, *rest = (np.array(column) for column in zip(*pairs)) if pairs else [np.zeros(0)] * 7
-    integer = np.int64
-    return (
-        a.astype(np.uint64), b.astype(np.uint64), *rest,
+    # unsigned, since Numba looks for negative indices at every access otherwise
+    return Pairs(a.astype(np.uint64), b.astype(np.uint64), *rest), Groups(
         np.cumsum([0] + [len(nodes) for nodes, _ in others]),
-        np.array([n for nodes, _ in others for n in nodes], dtype=integer),
+        np.array([n for nodes, _ in others for n in nodes], dtype=np.int64),
         np.cumsum([0] + [operators.size for _, operators in others]),
         np.concatenate([operators.ravel() for _, operators in others] or [np.zeros(0)]),
-    )  # fmt: skip
+    )
 
 
 def joint_groups(mesh: Mesh, layout: Layout):
@@ -102,25 +129,30 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
 
 
 @kernel
-def look_at_pairs(pairs, motion, x, y, vx, vy):
-    """Relative velocity and position of the nodes of each pair, in x and in y."""
-    a_nodes, b_nodes = pairs[:2]
-    for j in range(a_nodes.shape[0]):
-        a, b = a_nodes[j], b_nodes[j]
-        motion[0, j], motion[1, j] = vx[b] - vx[a], x[b] - x[a]
-        motion[2, j], motion[3, j] = vy[b] - vy[a], y[b] - y[a]
+def no_motion(count):
+    """Room for the motion of so many pairs or members: one block, which takes a few % less time."""
+    rows = np.zeros((4, count))
+    return Motion(rows[0], rows[1], rows[2], rows[3])
 
 
 @kernel
-def pair_pass(pairs, motion, x, y, vx, vy, step):
+def gather_pairs(pairs, relative, x, y, vx, vy):
+    """Relative velocity and position of the nodes of each pair."""
+    for j in range(pairs.a.shape[0]):
+        a, b = pairs.a[j], pairs.b[j]
+        relative.vx[j], relative.x[j] = vx[b] - vx[a], x[b] - x[a]
+        relative.vy[j], relative.y[j] = vy[b] - vy[a], y[b] - y[a]
+
+
+@kernel
+def pair_pass(pairs, relative, x, y, vx, vy, step):
     """Change velocities and positions after the kick to what spring and damper make of them at
     crossings of two nodes; `joint_operators` has the step.
 
-    `motion` has what `look_at_pairs` saw before the kick and is kept up to date. The indices are
-    unsigned, since Numba looks for negative ones at every access otherwise.
+    `relative` has what `gather_pairs` found before the kick and is kept up to date.
     """
     a_nodes, b_nodes, p, q, s, share_a, share_b = pairs
-    old_x, gap_x, old_y, gap_y = motion
+    old_x, gap_x, old_y, gap_y = relative
     for j in range(a_nodes.shape[0]):
         a, b = a_nodes[j], b_nodes[j]
         kicked_x, kicked_y = vx[b] - vx[a], vy[b] - vy[a]
@@ -142,19 +174,18 @@ def pair_pass(pairs, motion, x, y, vx, vy, step):
 
 
 @kernel
-def look_at_groups(members, before, x, y, vx, vy):
-    """Velocity and position of each member of a group, in x and in y."""
-    for i in range(members.shape[0]):
-        n = members[i]
-        before[0, i], before[1, i] = vx[n], x[n]
-        before[2, i], before[3, i] = vy[n], y[n]
+def gather_groups(groups, before, x, y, vx, vy):
+    """Velocity and position of each member of a group."""
+    for i in range(groups.members.shape[0]):
+        n = groups.members[i]
+        before.vx[i], before.x[i] = vx[n], x[n]
+        before.vy[i], before.y[i] = vy[n], y[n]
 
 
 @kernel
-def group_pass(groups, before, kicked, x, v, step):
+def group_pass(groups, v_before, x_before, kicked, x, v, step):
     """The same for crossings of any number of nodes and one direction, by dense operators P, Q
-    and S; `before` has the members' velocities, then positions, before the kick, and `kicked` is
-    scratch."""
+    and S, from the members' velocities and positions before the kick; `kicked` is scratch."""
     starts, members, offsets, operators = groups
     for i in range(members.shape[0]):
         kicked[i] = v[members[i]]
@@ -166,8 +197,8 @@ def group_pass(groups, before, kicked, x, v, step):
             new = 0.0
             for j in range(count):
                 k, m = i * count + j, first + j
-                new += operators[p + k] * before[0, m] + operators[q + k] * kicked[m]
-                new += operators[s + k] * before[1, m]
+                new += operators[p + k] * v_before[m] + operators[q + k] * kicked[m]
+                new += operators[s + k] * x_before[m]
             n = members[first + i]
             v[n] = new
             x[n] += step * (new - kicked[first + i])

@@ -11,30 +11,19 @@ import numpy as np
 from elastica._rotations import _inv_rotate
 from numba import njit
 
-from fiberweb.engines.base import (
-    RUNAWAY,
-    Numerics,
-    Recording,
-    readout_arrays,
-    steps_per_sample,
-)
-from fiberweb.engines.energy import drive_value
+from fiberweb.engines.base import RUNAWAY, Numerics, Recording, fitted_step, readout_arrays
+from fiberweb.engines.cosserat import largest_step as largest_step
 from fiberweb.engines.cosserat import refuse
+from fiberweb.engines.stepping import drive_value
 from fiberweb.model.mesh import Mesh
+
+PACKAGES = ("pyelastica", "numba", "numpy")
+NANOSECONDS = 500.0  # measured by `make bench`
+PLANAR, MODELS_SHEAR = False, True
+MESH_ERRORS = {}
 
 MM, MICRONEWTON = 1e3, 1e6  # a metre in mm; a newton in g mm / s^2
 GRAM_PER_SECOND = 1e3  # of one N s/m, and of one N/m per second
-PACKAGES = ("pyelastica", "numba", "numpy")
-NANOSECONDS = 500.0  # of CPU an element and step: `make bench`
-PLANAR, MODELS_SHEAR = False, True
-MESH_ERRORS = {}  # none on record for the described setup
-
-
-def largest_step(mesh: Mesh) -> float:
-    """The largest stable step (s); see `fiberweb.engines.stability`."""
-    from fiberweb.engines import stability
-
-    return stability.largest_step(mesh, "elastica")
 
 
 class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.Damping):
@@ -99,7 +88,7 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
     rest = mesh.position
     limit = RUNAWAY * mesh.scene.wave_speed * MM
     out = np.full((mesh.scene.samples, len(nodes), 2), np.nan)
-    unbooked = np.full((mesh.scene.samples, 4), np.nan)
+    no_ledger = np.full((mesh.scene.samples, 4), np.nan)
     stepper, time = ea.PositionVerlet(), 0.0
     for sample in range(mesh.scene.samples):
         at = np.concatenate([rod.position_collection[:2].T for rod in rods]) / MM - rest
@@ -107,10 +96,10 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
         fastest = np.max([np.abs(rod.velocity_collection).max() for rod in rods])  # NaN if any is
         if not (fastest < limit and np.isfinite(at).all()):
             out[sample:] = np.nan
-            return Recording(out, unbooked, sample / mesh.scene.sample_rate)
+            return Recording(out, no_ledger, sample / mesh.scene.sample_rate)
         if sample + 1 < mesh.scene.samples:
             time = run_steps(simulator, stepper, time, step, per_sample)
-    return Recording(out, unbooked, None)
+    return Recording(out, no_ledger, None)
 
 
 def run_steps(simulator, stepper, time: float, step: float, count: int) -> float:
@@ -125,8 +114,7 @@ def assemble(mesh: Mesh, numerics: Numerics):
     """The simulator, its rods, the step (s) and the steps per sample."""
     refuse(mesh)
     scene = mesh.scene
-    per_sample = steps_per_sample(scene, numerics.time_step)
-    step = 1.0 / (scene.sample_rate * per_sample)
+    step, per_sample = fitted_step(scene, numerics.time_step)
     simulator = Simulator()
     rods = [_rod(mesh, fibre) for fibre in range(len(mesh.first) - 1)]
     for fibre, rod in enumerate(rods):

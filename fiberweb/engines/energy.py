@@ -31,10 +31,12 @@ class Ledger(NamedTuple):
     joint_damping: np.ndarray  # N s/m, (joints,)
 
 
-def ledger(mesh: Mesh, layout: Layout, order: Interleaving, mass: np.ndarray) -> Ledger:
+def build_ledger(
+    mesh: Mesh, layout: Layout, interleaving: Interleaving, mass: np.ndarray
+) -> Ledger:
     """An empty ledger; the mass of the nodes is in the order of the kernels."""
     # unsigned, since Numba looks for negative indices at every access otherwise
-    joints = order.place[layout.joints].astype(np.uint64)
+    joints = interleaving.place[layout.joints].astype(np.uint64)
     rate = mesh.scene.damping
     return Ledger(np.zeros(2), mass, rate, joints, mesh.joint_stiffness, mesh.joint_damping)
 
@@ -63,6 +65,12 @@ def enter_drive(ledger, forcing, half_impulse, vx, vy):
     for i in range(nodes.shape[0]):
         m = nodes[i]
         ledger.total[WORK] += half_impulse * (load_x[i] * vx[m] + load_y[i] * vy[m])
+
+
+@kernel
+def enter_dissipation(ledger, span, power):
+    """What is dissipated at a rate (W) in a span of time (s)."""
+    ledger.total[DISSIPATED] += span * power
 
 
 @kernel

@@ -2,16 +2,76 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from fiberweb.engines.energy import enter_sample, joint_energy, pull_work, squared_speed
 from fiberweb.engines.jit import kernel
 
 
+class State(NamedTuple):
+    """What moves: positions half a step ahead of the velocities' time, each (n,)."""
+
+    x: np.ndarray  # m
+    y: np.ndarray
+    vx: np.ndarray  # m/s
+    vy: np.ndarray
+
+
+class Rods(NamedTuple):
+    """What the passes multiply with: over edges (n - stride,), then over nodes (n,)."""
+
+    axial: np.ndarray  # EA on elements, 0 on gaps, N
+    edge: np.ndarray  # rest length, m
+    over_span: np.ndarray  # 1/m where a moment is carried, else 0
+    bend: np.ndarray  # bands of EI times the spline's matrix, N m^3
+    bend_up: np.ndarray
+    bend_up2: np.ndarray
+    kick_x: np.ndarray  # step over mass, damped over half a step
+    kick_y: np.ndarray
+    half: float  # 1/2, or 0 in the usual chain, which has no bow
+    decay: float  # of a free velocity over a step
+
+
+class Scratch(NamedTuple):
+    """What the passes hand on: over edges, of which edge i lies between nodes i and i + stride,
+    then over nodes."""
+
+    tangent_x: np.ndarray
+    tangent_y: np.ndarray
+    inverse: np.ndarray  # of the length; has to hold that of a moment ago at the start
+    length: np.ndarray  # and later the y force
+    tension: np.ndarray  # and later the x force
+    bowing: np.ndarray  # what the bow adds to the moments
+    curvature: np.ndarray
+    moment: np.ndarray
+    outer_x: np.ndarray  # pull and drive
+    outer_y: np.ndarray
+
+
 @kernel
-def edge_views(work, s):
-    """The scratch over edges, of which edge i lies between nodes i and i + s: tangents x and y,
-    inverse length, length and later y force, tension and later x force, what the bow adds."""
-    return work[0][s:], work[1][s:], work[2][s:], work[3][s:], work[4][s:], work[5][s:]
+def pass_views(state, scratch, rods, s):
+    """The shifted parts of the arrays that each pass runs over, in the order of its arguments.
+
+    Made once a call: within the loop over steps they would cost as much as a pass.
+    """
+    x, y, vx, vy = state
+    tx, ty, inverse, fy, fx, bowing, k, moment, outer_x, outer_y = scratch
+    axial, edge, over_span, c, c_up, c_up2, kick_x, kick_y = rods[:8]
+    n = x.shape[0]
+    inner, two = slice(s, n - s), slice(2 * s, n - 2 * s)
+    return (
+        (x[:-s], x[s:], y[:-s], y[s:], tx, ty, inverse, fy),
+        (tx[:-s], tx[s:], ty[:-s], ty[s:], over_span[inner], k[inner], moment[inner]),
+        (k[:-s], k[s:], inverse, fy, axial, edge, fx, bowing),
+        (moment[two], c[two], c_up[two], c_up2[two], c_up[s : n - 3 * s],
+         c_up2[: n - 4 * s], k[two], k[3 * s : n - s], k[4 * s :], k[s : n - 3 * s],
+         k[: n - 4 * s], bowing[s : n - 3 * s], bowing[2 * s : n - 2 * s]),
+        (tx, ty, inverse, moment[:-s], moment[s:], fx, fy),
+        (x[inner], vx[inner], fx[:-s], fx[s:], outer_x[inner], kick_x[inner]),
+        (y[inner], vy[inner], fy[:-s], fy[s:], outer_y[inner], kick_y[inner]),
+    )  # fmt: skip
 
 
 @kernel
@@ -97,13 +157,13 @@ def kick_pass(x, v, f0, f1, outer, kick, decay, step):
 
 
 @kernel
-def strain_energy(x, y, chain, work, s):
+def strain_energy(x, y, rods, scratch, s):
     """Elastic energy of the fibres at given positions (J); the potential of the passes, whose
     scratch it uses."""
-    axial, edge, over_span, c, c_up, c_up2 = chain[:6]
-    half = chain[13]
-    tx, ty, inverse, length, _, _ = edge_views(work, s)
-    k, slope = work[6], work[7]
+    axial, edge, over_span, c, c_up, c_up2 = rods[:6]
+    half = rods.half
+    tx, ty, inverse, length = scratch[:4]
+    k, slope = scratch.curvature, scratch.moment
     stretch_pass(x[:-s], x[s:], y[:-s], y[s:], tx, ty, inverse, length)
     turn_pass(tx[:-s], tx[s:], ty[:-s], ty[s:], over_span[s:-s], k[s:-s], slope[s:-s])
     total = 0.0
@@ -116,3 +176,14 @@ def strain_energy(x, y, chain, work, s):
         if axial[i] > 0.0:
             total += axial[i] * edge[i] * (e + np.log(g) + (e + 0.5 * longer) * longer)
     return total
+
+
+@kernel
+def record_energy(row, state, scratch, rods, forcing, readouts, ledger, stepping, ramp):
+    """Fill one row of the energies at a whole step; returns the work of the whole pull (J)."""
+    vx, vy, half = state.vx, state.vy, 0.5 * stepping.step
+    x, y = state.x - half * vx, state.y - half * vy
+    elastic = strain_energy(x, y, rods, scratch, stepping.stride) + joint_energy(ledger, x, y)
+    pulled = pull_work(x, y, readouts, forcing)
+    enter_sample(row, ledger, 0.5 * squared_speed(vx, vy, ledger.mass), elastic, ramp, pulled)
+    return pulled

@@ -23,39 +23,26 @@ _AWAY = 1000  # elements
 
 @dataclass(frozen=True)
 class Layout:
-    """Arrays over the padded chain of n nodes and n - 1 edges.
+    """Arrays over the padded chain of n nodes and n - 1 edges."""
 
-    Attributes:
-        at: padded index of each node of the mesh, shape (nodes of the mesh,).
-        x, y: rest positions, shape (n,), m.
-        edge: rest length of edges, shape (n - 1,), m; any positive number at gaps.
-        solid: 1 on elements and 0 on gaps, shape (n - 1,).
-        bends: 1 where a moment is carried and 0 where not, shape (n,).
-        span: rest length that a node's curvature spans, shape (n,), m: half of either element
-            beside it, of the one inside at a clamp; 1 where no moment is carried.
-        voronoi: half the sum of the neighbouring elements' rest lengths, shape (n,), m.
-        mass: of each node, shape (n,), kg; 1 at ghosts.
-        free_x, free_y: 1 where a node may move and 0 where not, shape (n,).
-        pull_x, pull_y, load_x, load_y: as in the mesh, shape (n,), N.
-        joints: padded indices, shape (joints, 2).
-    """
-
-    at: np.ndarray
-    x: np.ndarray
+    at: np.ndarray  # padded index of each node of the mesh, (nodes of the mesh,)
+    x: np.ndarray  # rest positions, (n,), m
     y: np.ndarray
-    edge: np.ndarray
-    solid: np.ndarray
-    bends: np.ndarray
+    edge: np.ndarray  # rest length of edges, (n - 1,), m; any positive number at gaps
+    solid: np.ndarray  # 1 on elements and 0 on gaps, (n - 1,)
+    bends: np.ndarray  # 1 where a moment is carried and 0 where not, (n,)
+    # rest length that a node's curvature spans, (n,), m: half of either element beside it, of the
+    # one inside at a clamp; 1 where no moment is carried
     span: np.ndarray
-    voronoi: np.ndarray
-    mass: np.ndarray
-    free_x: np.ndarray
+    voronoi: np.ndarray  # half the sum of the neighbouring elements' rest lengths, (n,), m
+    mass: np.ndarray  # (n,), kg; 1 at ghosts
+    free_x: np.ndarray  # 1 where a node may move and 0 where not, (n,)
     free_y: np.ndarray
-    pull_x: np.ndarray
+    pull_x: np.ndarray  # these as in the mesh, (n,), N
     pull_y: np.ndarray
     load_x: np.ndarray
     load_y: np.ndarray
-    joints: np.ndarray
+    joints: np.ndarray  # padded indices, (joints, 2)
 
 
 def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
@@ -84,25 +71,13 @@ def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
         position[near - 1] = position[near] + back
     position[at[-1] + 1 :] = position[: at[0]]
     mass = _pad(at, size, mesh.masses(), fill=1.0)
-    free = ~mesh.held
+    free, pull, load = ((*a.T,) for a in (~mesh.held, mesh.pull, mesh.load))
+    x, y = position.T.copy()
     return Layout(
-        at=at,
-        x=position[:, 0].copy(),
-        y=position[:, 1].copy(),
-        edge=edge,
-        solid=solid,
-        bends=bends,
-        span=span,
-        voronoi=voronoi,
-        mass=mass,
-        free_x=_pad(at, size, free[:, 0]),
-        free_y=_pad(at, size, free[:, 1]),
-        pull_x=_pad(at, size, mesh.pull[:, 0]),
-        pull_y=_pad(at, size, mesh.pull[:, 1]),
-        load_x=_pad(at, size, mesh.load[:, 0]),
-        load_y=_pad(at, size, mesh.load[:, 1]),
-        joints=at[mesh.joints].reshape(-1, 2),
-    )
+        at, x, y, edge, solid, bends, span, voronoi, mass,
+        *(_pad(at, size, values) for values in (*free, *pull, *load)),
+        at[mesh.joints].reshape(-1, 2),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -112,18 +87,12 @@ class Interleaving:
     Fibres of as many nodes each lie side by side: node j of all of them, then node j + 1. What
     stands `stride` further is the next node, so a loop over all reads neighbours in whole cache
     lines. Other networks stay a chain, with a stride of 1.
-
-    Attributes:
-        stride: how far apart neighbours are.
-        nodes: padded index in the chain of each node here, shape (n',).
-        edges: the same of the edges, edge i lying between nodes i and i + stride.
-        place: index here of each node of the chain, shape (n,); of a ghost, of one copy.
     """
 
-    stride: int
-    nodes: np.ndarray
-    edges: np.ndarray
-    place: np.ndarray
+    stride: int  # how far apart neighbours are
+    nodes: np.ndarray  # padded index in the chain of each node here, (n',)
+    edges: np.ndarray  # the same of the edges, edge i lying between nodes i and i + stride
+    place: np.ndarray  # index here of each node of the chain, (n,); of a ghost, of one copy
 
 
 def interleave(mesh: Mesh, layout: Layout, gap: int) -> Interleaving:

@@ -20,19 +20,12 @@ from fiberweb.model.mesh import Mesh
 
 EIGENVALUE = 1e-4  # relative tolerance of the largest; it is found from below
 CAUTION = 1.0 - 3e-4  # of the limit, for the eigenvalue's error and that of `STEP`
-STEP = 1e-3  # relative tolerance of a limit that dampers shift: `SAFETY` leaves a hundred times that
+STEP = 1e-3  # relative tolerance of a limit that dampers shift: automatic steps stay 0.1 below it
 # A limit this close to that of the fibres alone is not the springs' of the crossings, and so no
 # damper could lift it.
 UNTIED = 0.98
 BEYOND = 1.1  # of the fibres' own limit, which heavier crossings can lift a little
 AT_REST = 1e-9  # a damper's z below which its block is 1 to round-off
-
-
-def largest_step(mesh: Mesh, engine: str) -> float:
-    """Of an engine by its name, s."""
-    from fiberweb.engines import load
-
-    return load(engine).largest_step(mesh)
 
 
 def leapfrog_limit(
@@ -103,9 +96,7 @@ def _damped_mass(mesh: Mesh, layout: Layout, step: float) -> csr_array:
 def _largest(matrix) -> float:
     """Largest eigenvalue of a symmetric matrix: many equal fibres crowd its end."""
     start = np.random.RandomState(0).standard_normal(matrix.shape[0])
-    highest = eigsh(
-        matrix, k=1, which="LA", v0=start, tol=EIGENVALUE, return_eigenvectors=False
-    )
+    highest = eigsh(matrix, k=1, which="LA", v0=start, tol=EIGENVALUE, return_eigenvectors=False)
     return float(highest[0])
 
 

@@ -43,17 +43,17 @@ class Readouts(NamedTuple):
     rest_y: np.ndarray
 
 
-def stepping(mesh: Mesh, numerics: Numerics, order: Interleaving) -> Stepping:
+def build_stepping(mesh: Mesh, numerics: Numerics, interleaving: Interleaving) -> Stepping:
     """The step of a run, shortened to divide a sample."""
     step, per_sample = fitted_step(mesh.scene, numerics.time_step)
-    return Stepping(step, per_sample, RUNAWAY * mesh.scene.wave_speed, order.stride)
+    return Stepping(step, per_sample, RUNAWAY * mesh.scene.wave_speed, interleaving.stride)
 
 
-def forcing(mesh: Mesh, layout: Layout, order: Interleaving) -> Forcing:
+def build_forcing(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Forcing:
     """Outer forces in the order of the kernels."""
-    load_x, load_y = layout.load_x[order.nodes], layout.load_y[order.nodes]
+    load_x, load_y = layout.load_x[interleaving.nodes], layout.load_y[interleaving.nodes]
     driven = np.flatnonzero(load_x**2 + load_y**2)
-    pull = packed(layout.pull_x[order.nodes], layout.pull_y[order.nodes])
+    pull = packed(layout.pull_x[interleaving.nodes], layout.pull_y[interleaving.nodes])
     scene = mesh.scene
     return Forcing(
         mesh.drive, scene.drive_rate, scene.tension_ramp, driven, load_x[driven], load_y[driven],
@@ -61,16 +61,16 @@ def forcing(mesh: Mesh, layout: Layout, order: Interleaving) -> Forcing:
     )  # fmt: skip
 
 
-def readouts(mesh: Mesh, layout: Layout, order: Interleaving) -> Readouts:
+def build_readouts(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Readouts:
     """What is read, in the order of the kernels."""
     nodes, weights = readout_arrays(mesh)
-    rest = packed(layout.x[order.nodes], layout.y[order.nodes])
-    return Readouts(order.place[layout.at[nodes]], weights, *rest)
+    rest = packed(layout.x[interleaving.nodes], layout.y[interleaving.nodes])
+    return Readouts(interleaving.place[layout.at[nodes]], weights, *rest)
 
 
-def displace(state, mesh: Mesh, layout: Layout, order: Interleaving) -> None:
+def displace(state, mesh: Mesh, layout: Layout, interleaving: Interleaving) -> None:
     """Add what a run starts with to the positions of a state."""
-    at = order.place[layout.at]
+    at = interleaving.place[layout.at]
     state.x[at] += mesh.start[:, 0]
     state.y[at] += mesh.start[:, 1]
 
@@ -96,6 +96,15 @@ def apply_pull(forcing, ramp, outer_x, outer_y):
     for i in range(outer_x.shape[0]):
         outer_x[i] = ramp * forcing.pull_x[i]
         outer_y[i] = ramp * forcing.pull_y[i]
+
+
+@kernel
+def apply_forces(forcing, ramp, u, outer_x, outer_y):
+    """Set the outer force of the driven nodes: a share of the pull, and the drive."""
+    for i in range(forcing.nodes.shape[0]):
+        m = forcing.nodes[i]
+        outer_x[m] = ramp * forcing.pull_x[m] + u * forcing.load_x[i]
+        outer_y[m] = ramp * forcing.pull_y[m] + u * forcing.load_y[i]
 
 
 @kernel

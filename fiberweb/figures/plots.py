@@ -36,8 +36,8 @@ def rows_of(table: pd.DataFrame, study: str, setup: str) -> pd.DataFrame:
 
 def colours(values: Iterable[float]) -> dict[float, np.ndarray]:
     """Colour of each value, such as N or a spacing, dark to light as it grows."""
-    found = sorted(set(values))
-    return dict(zip(found, style.colours(len(found)), strict=True))
+    distinct = sorted(set(values))
+    return dict(zip(distinct, style.colours(len(distinct)), strict=True))
 
 
 def points(
@@ -107,7 +107,7 @@ def baselines(ax: Axes, table: pd.DataFrame, name: str, **look: object) -> None:
 
 
 def baseline_labels(table: pd.DataFrame, name: str, gap: float) -> list[tuple[float, str]]:
-    """Place and words of the labels of the baselines; baselines closer than gap have one in common."""
+    """Place and words of the labels of the baselines, one for all that are closer than gap."""
     groups: list[list[tuple[float, str]]] = []
     for value, readout in sorted(zip(table[name], table["readout"], strict=True)):
         if groups and value - groups[-1][-1][0] < gap:

@@ -73,10 +73,10 @@ def applied() -> AbstractContextManager:
 
 def figure(width: float, height: float) -> Figure:
     """An empty figure with constrained layout; width and height in mm."""
-    made = Figure(figsize=(width * MM, height * MM), layout="constrained")
-    FigureCanvasAgg(made)
-    made.get_layout_engine().set(w_pad=2 * MM, h_pad=1 * MM, wspace=0.03, hspace=0.03)
-    return made
+    empty = Figure(figsize=(width * MM, height * MM), layout="constrained")
+    FigureCanvasAgg(empty)
+    empty.get_layout_engine().set(w_pad=2 * MM, h_pad=1 * MM, wspace=0.03, hspace=0.03)
+    return empty
 
 
 def colours(count: int) -> np.ndarray:
@@ -103,11 +103,11 @@ def mark_unstable(ax: Axes, places: Sequence[float]) -> None:
         )  # fmt: skip
 
 
-def save(made: Figure, path: str | Path) -> tuple[Path, Path]:
+def save(drawn: Figure, path: str | Path) -> tuple[Path, Path]:
     """Write the figure as PNG (300 dpi) and as PDF, with the same bytes for the same figure.
 
     Args:
-        made: from `figure`.
+        drawn: from `figure`.
         path: with or without .png or .pdf; folders are made.
 
     Returns:
@@ -117,6 +117,6 @@ def save(made: Figure, path: str | Path) -> tuple[Path, Path]:
     stem = path.stem if path.suffix in (".png", ".pdf") else path.name  # "s100.0mm" has a dot
     path.parent.mkdir(parents=True, exist_ok=True)
     png, pdf = path.with_name(f"{stem}.png"), path.with_name(f"{stem}.pdf")
-    made.savefig(png, dpi=RESOLUTION)
-    made.savefig(pdf, metadata={"CreationDate": None})
+    drawn.savefig(png, dpi=RESOLUTION)
+    drawn.savefig(pdf, metadata={"CreationDate": None})
     return png, pdf

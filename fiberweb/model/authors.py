@@ -1,7 +1,7 @@
 """What the authors' code did, each fact with its source; how it cut fibres is in `authors_mesh`.
 
 Facts only, read off their public repository (github.com/NaughtonLab/ReservoirFiberNetworks), and
-none of its code. SI units. Where no script is named, all of their simulation scripts agree.
+none of its code. SI units.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ SEED = 1234
 KNOTS = 501
 
 STEP = 5e-6  # s; simulation scripts
+
 # Simulation scripts. Elements: at least so many on a fibre, but half as long, and no such least
 # number, at spacings of 20 and 30 mm. Load: nodes about the middle and their shares of the force;
 # a negative index skews what was meant to be symmetric.

@@ -89,7 +89,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
         scene: to be meshed.
         elements_per_section: elements on a section as long as the network's spacing; other
             sections get proportionally many. None: the authors' mesh, 10 mm and at least 50
-            elements a fibre.
+            elements per fibre.
 
     Raises:
         ValueError: elements_per_section below 1, or sliding ends on slanted fibres.
@@ -101,10 +101,10 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     network = scene.network
     if elements_per_section is not None:
         lines = cut(scene, network.spacing / elements_per_section)
-    elif network.topology == "polygon":
-        lines = cut(scene, ELEMENT)
-    else:
+    elif network.topology == "crosshatch":
         lines = authors_mesh.cut_crosshatch(scene)
+    else:
+        lines = cut(scene, ELEMENT)
     position = np.concatenate([line.points for line in lines])
     first = np.cumsum([0] + [len(line.points) for line in lines])
     joints, stiffness, damping = _joints(scene, lines, first)

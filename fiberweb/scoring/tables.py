@@ -57,7 +57,7 @@ def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataF
 
 
 def study(capacity_paths: Sequence[str | Path], choices: Sequence[str]) -> pd.DataFrame:
-    """One row for each run and choice of its force, with `STUDY_COLUMNS` after `COLUMNS`.
+    """One row per run and choice of its force: `COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`.
 
     Args:
         capacity_paths: as for `rows`; a run that two choices agree on comes twice.

@@ -56,7 +56,7 @@ def describe(plan: Plan) -> str:
 
 def _choice(plan: Plan) -> str:
     elements = plan.elements_per_section
-    mesh = "the authors' mesh" if elements is None else f"{elements} elements a section"
+    mesh = "the authors' mesh" if elements is None else f"{elements} elements per section"
     if plan.scene.setup == "published":
         why = "the published setup fixes mesh and step"
     elif plan.accuracy or elements == ACCURACIES["standard"]:
@@ -96,13 +96,14 @@ def _left_out(plan: Plan) -> str:
 
 
 def _against(step: float, limit: float, scene: Scene) -> str:
+    stated = f"the stability limit of {1e6 * limit:.3g} us"
     if step > limit and scene.filter_order:
-        return f"above the limit of {1e6 * limit:.3g} us without the filter, which damps the excess"
+        return f"above {stated} without the filter, which damps the excess"
     if step > limit:
-        return f"above the limit of {1e6 * limit:.3g} us: the run will most likely blow up"
+        return f"above {stated}: the run will most likely blow up"
     return (
-        f"{step / limit:.2f} of the limit of {1e6 * limit:.3g} us (at most {safety(scene):g} by "
-        "itself; rounded down to divide the sample period)"
+        f"{step / limit:.2f} of {stated} (at most {safety(scene):g} by itself; rounded down to "
+        "divide the sample period)"
     )
 
 

@@ -109,14 +109,14 @@ def plan(
     load(chosen).refuse(mesh)
     if published and time_step is None:
         return Plan(mesh, chosen, elements_per_section, STEP)
-    made = Plan(mesh, chosen, elements_per_section, time_step, accuracy)
-    step = made.numerics.time_step
-    if not (force_time_step or scene.filter_order) and step > made.limit:
+    planned = Plan(mesh, chosen, elements_per_section, time_step, accuracy)
+    step = planned.numerics.time_step
+    if not (force_time_step or scene.filter_order) and step > planned.limit:
         raise ValueError(
-            f"time_step = {step:.3g} s is above the stability limit of {made.limit:.3g} s of the "
-            f"{chosen} engine on this mesh; take a smaller one or leave it out"
+            f"time_step = {step:.3g} s is above the stability limit of {planned.limit:.3g} s of "
+            f"the {chosen} engine on this mesh; take a smaller one or leave it out"
         )
-    return made
+    return planned
 
 
 def stubby(scene: Scene) -> bool:

@@ -4,7 +4,7 @@ Every figure is CPU time of one process on one core, from windows of both engine
 turn, so that a ratio compares moments next to each other; medians are printed. Errors are of
 displacement over the first second, rms over the rms of the converged answer (kirchhoff, 16
 elements a section); PyElastica's is that of `cosserat` on the same mesh and step, which equals
-it to round-off (tests/physics/test_equality.py). Ours comes twice where the meshes differ: on the
+it to round-off (tests/engines/test_equality.py). Ours comes twice where the meshes differ: on the
 coarsest mesh that is no worse than PyElastica's, and at the accuracy that runs have by default.
 Then our kernels over the sizes of a network, the scoring of the largest run (912 signals, 25 000
 samples, 261 targets; noise for readouts), and what a job costs beside its physics.
@@ -28,8 +28,9 @@ from fiberweb.engines.base import Numerics, steps_per_sample
 from fiberweb.model import authors
 from fiberweb.model.mesh import build
 from fiberweb.simulation.plan import ACCURACIES, plan
+from fiberweb.validation.accuracy import difference
 
-WINDOWS = 5
+WINDOWS = 5  # odd, for a median
 OLD_STEPS = 300  # of PyElastica in a window
 NEW_SECONDS = 5.0  # simulated by ours in a window
 SECONDS = 100.0  # of a run of the paper
@@ -68,9 +69,11 @@ def meshes(scene: Scene) -> list[int | None]:
     if scene.setup == "published":
         return [None]
     exact = displacement(scene, "kirchhoff", FINEST)
-    allowed = error(authors_displacement(scene), exact)
+    allowed = difference(authors_displacement(scene), exact)
     fair = next(
-        n for n in range(2, FINEST) if error(displacement(scene, "kirchhoff", n), exact) <= allowed
+        n
+        for n in range(2, FINEST)
+        if difference(displacement(scene, "kirchhoff", n), exact) <= allowed
     )
     return list(dict.fromkeys([fair, ACCURACIES["standard"]]))
 
@@ -85,15 +88,15 @@ def compare(scene: Scene, engine: str, elements: int | None) -> None:
     now = elastica.run_steps(simulator, stepper, now, step, OLD_STEPS)  # compiles
     window = build(replace(scene, duration=NEW_SECONDS), new.elements_per_section)
     new_steps = steps_per_sample(scene, new.time_step)
-    load = engines.load(engine)
-    load.integrate(window, new)
+    ours = engines.load(engine)
+    ours.integrate(window, new)
     old_times, new_times = [], []
     for _ in range(WINDOWS):
         start = time.process_time()
         now = elastica.run_steps(simulator, stepper, now, step, OLD_STEPS)
         old_times.append((time.process_time() - start) / OLD_STEPS)
         start = time.process_time()
-        load.integrate(window, new)
+        ours.integrate(window, new)
         new_times.append((time.process_time() - start) / (new_steps * window.scene.samples))
     old_rate = SECONDS * scene.sample_rate * per_sample
     new_rate = SECONDS * scene.sample_rate * new_steps
@@ -101,8 +104,8 @@ def compare(scene: Scene, engine: str, elements: int | None) -> None:
     old_error = new_error = np.nan  # mesh and step are part of the published setup's definition
     if elements is not None:
         exact = displacement(scene, "kirchhoff", FINEST)
-        old_error = error(authors_displacement(scene), exact)
-        new_error = error(displacement(scene, engine, elements), exact)
+        old_error = difference(authors_displacement(scene), exact)
+        new_error = difference(displacement(scene, engine, elements), exact)
     _row(scene, "elastica", old_mesh, old_rate, median(old_times), old_error, 1.0)
     _row(scene, engine, new_mesh, new_rate, median(new_times), new_error, ratio)
 
@@ -124,11 +127,6 @@ def authors_displacement(scene: Scene) -> np.ndarray:
     )
 
 
-def error(a: np.ndarray, exact: np.ndarray) -> float:
-    """Rms difference over the rms of the exact."""
-    return float(np.sqrt(np.mean((a - exact) ** 2) / np.mean(exact**2)))
-
-
 def _row(scene, engine, mesh, steps, per_step, error, ratio) -> None:
     n = scene.network.n
     print(
@@ -144,12 +142,12 @@ def kernel(setup: str, n: int) -> str:
     """ns an element and step of a whole run with the setup's own engine and mesh, median."""
     scene = Scene(crosshatch(n, length=0.5), setup, duration=2 * NEW_SECONDS / n)
     numerics = plan(scene).numerics
-    mesh, load = build(scene, numerics.elements_per_section), engines.load(numerics.engine)
-    load.integrate(mesh, numerics)
+    mesh, engine = build(scene, numerics.elements_per_section), engines.load(numerics.engine)
+    engine.integrate(mesh, numerics)
     times = []
     for _ in range(WINDOWS):
         start = time.process_time()
-        load.integrate(mesh, numerics)
+        engine.integrate(mesh, numerics)
         times.append(time.process_time() - start)
     steps = steps_per_sample(scene, numerics.time_step) * scene.samples
     return f"{1e9 * median(times) / steps / mesh.elements:.2f} ({mesh.elements})"
@@ -169,14 +167,14 @@ def scored(scoring: str) -> tuple[float, float]:
         "taken = time.process_time() - start\n"
         "print(taken, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
     )
-    found = [
+    outputs = [
         subprocess.run(
             [sys.executable, "-c", code], check=True, capture_output=True, text=True,
             env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
         ).stdout.split()
         for _ in range(3)
     ]  # fmt: skip
-    seconds, kilobytes = zip(*found)
+    seconds, kilobytes = zip(*outputs)
     return median(map(float, seconds)), 1e-6 * max(map(float, kilobytes))
 
 

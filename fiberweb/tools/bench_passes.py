@@ -1,4 +1,4 @@
-"""`python -m fiberweb.tools.bench_passes`: what each pass of the planar kernels costs, beside a floor.
+"""`python -m fiberweb.tools.bench_passes`: cost of each pass of the planar kernels, beside a floor.
 
 ns per element, the minimum of several repeats, over chains of several lengths; in brackets the
 floor on this machine: what as many loads and stores cost in a loop that only adds (measured),
@@ -12,38 +12,39 @@ import timeit
 import numpy as np
 from numba import njit
 
-from fiberweb.engines import cosserat, kirchhoff, laplace
+from fiberweb.engines import cosserat_passes as cosserat
+from fiberweb.engines import kirchhoff_passes as kirchhoff
+from fiberweb.engines import laplace
 from fiberweb.engines.jit import kernel
 from fiberweb.engines.layout import packed
 
 SIZES = (160, 300, 600, 1200, 2000)
 INNER, REPEATS = 2000, 9
 STEP = 1e-9
-# pass, arguments before the scalars, scalars, arguments after, then loads, stores, roots,
-# divisions an element
+# pass, arrays, scalars after them, then loads, stores, roots, divisions an element
 PASSES = {
     "kirchhoff": [
-        ("stretch", kirchhoff.stretch_pass, 8, (), 0, 5, 4, 0, 0),
-        ("turn", kirchhoff.turn_pass, 7, (), 0, 5, 2, 0, 0),
-        ("tension", kirchhoff.tension_pass, 8, (0.5,), 0, 6, 2, 0, 0),
-        ("moment", kirchhoff.moment_pass, 13, (), 0, 13, 1, 0, 0),
-        ("force", kirchhoff.force_pass, 7, (), 0, 6, 2, 0, 0),
-        ("kick and drift x", kirchhoff.kick_pass, 6, (0.99, STEP), 0, 6, 2, 0, 0),
-        ("kick and drift y", kirchhoff.kick_pass, 6, (0.99, STEP), 0, 6, 2, 0, 0),
+        ("stretch", kirchhoff.stretch_pass, 8, (), 5, 4, 0, 0),
+        ("turn", kirchhoff.turn_pass, 7, (), 5, 2, 0, 0),
+        ("tension", kirchhoff.tension_pass, 8, (0.5,), 6, 2, 0, 0),
+        ("moment", kirchhoff.moment_pass, 13, (), 13, 1, 0, 0),
+        ("force", kirchhoff.force_pass, 7, (), 6, 2, 0, 0),
+        ("kick and drift x", kirchhoff.kick_pass, 6, (0.99, STEP), 6, 2, 0, 0),
+        ("kick and drift y", kirchhoff.kick_pass, 6, (0.99, STEP), 6, 2, 0, 0),
     ],
     "cosserat": [
-        ("stress", cosserat.stress_pass, 13, (1.0, 1.0, 1.0), 4, 13, 4, 1, 1),
-        ("couple", cosserat.couple_pass, 7, (), 0, 6, 1, 0, 1),
-        ("kick x", cosserat.velocity_pass, 5, (0.99,), 0, 5, 1, 0, 0),
-        ("kick y", cosserat.velocity_pass, 5, (0.99,), 0, 5, 1, 0, 0),
-        ("spin", cosserat.spin_pass, 8, (1.0, STEP), 0, 8, 1, 0, 0),
-        ("drift x", cosserat.drift_pass, 2, (STEP,), 0, 2, 1, 0, 0),
-        ("drift y", cosserat.drift_pass, 2, (STEP,), 0, 2, 1, 0, 0),
-        ("rotate", cosserat.rotate_pass, 4, (STEP,), 0, 4, 3, 0, 0),
+        ("stress", cosserat.stress_pass, 17, (1.0, 1.0, 1.0), 13, 4, 1, 1),
+        ("couple", cosserat.couple_pass, 7, (), 6, 1, 0, 1),
+        ("kick x", cosserat.velocity_pass, 5, (0.99,), 5, 1, 0, 0),
+        ("kick y", cosserat.velocity_pass, 5, (0.99,), 5, 1, 0, 0),
+        ("spin", cosserat.spin_pass, 8, (1.0, STEP), 8, 1, 0, 0),
+        ("drift x", cosserat.drift_pass, 2, (STEP,), 2, 1, 0, 0),
+        ("drift y", cosserat.drift_pass, 2, (STEP,), 2, 1, 0, 0),
+        ("rotate", cosserat.rotate_pass, 4, (STEP,), 4, 3, 0, 0),
     ],
     "Laplace filter, of x, y and angle": [
-        ("difference", laplace.difference_pass, 5, (), 0, 4, 1, 0, 0),
-        ("stencil", laplace.stencil_pass, 13, (1.0,) * 6, 0, 13, 1, 0, 0),
+        ("difference", laplace.difference_pass, 5, (), 4, 1, 0, 0),
+        ("stencil", laplace.stencil_pass, 13, (1.0,) * 6, 13, 1, 0, 0),
     ]
     * 3,
 }
@@ -84,12 +85,11 @@ def main() -> None:
     for title, passes in PASSES.items():
         print(f"{title:<34}" + "".join(f"{size:>8} elements" for size in SIZES))
         total = np.zeros((len(SIZES), 2))
-        for name, function, before, scalars, after, *counts in passes:
+        for name, function, count, scalars, *counts in passes:
             row = []
             for size in SIZES:
-                arrays = _arrays(size, before + after)
-                arguments = (*arrays[:before], *scalars, *arrays[before:])
-                row.append((_time(function, arguments, size), floor(unit[size], *counts)))
+                cost = _time(function, (*_arrays(size, count), *scalars), size)
+                row.append((cost, floor(unit[size], *counts)))
             total += np.array(row)
             print(f"  {name:<32}" + "".join(f"{a:>10.2f} ({b:4.2f})" for a, b in row))
         print(f"  {'sum':<32}" + "".join(f"{a:>10.2f} ({b:4.2f})" for a, b in total) + "\n")

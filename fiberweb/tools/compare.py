@@ -1,8 +1,8 @@
 """`python -m fiberweb.tools.compare OLD.csv NEW.csv`: how far capacities moved between two tables.
 
-The tables are of one study, such as results/tables/ridge.csv before and after a change of the
-numerics. Rows of one design point are compared: those that agree in all that is not an outcome.
-Where the mesh or the step is what a study varies, rows that agree are taken in its order.
+The tables are of one study, such as results/tables/described/ridge.csv before and after a change
+of the numerics. Rows of one design point are compared: those that agree in all that is not an
+outcome. Where the mesh or the step is what a study varies, rows that agree are taken in its order.
 
 Ends with 0 if no capacity moved by more than the tolerance and no run became stable or unstable,
 with 1 if one did, with 2 and one sentence if the tables cannot be compared.
@@ -46,13 +46,14 @@ def read(path: str | Path) -> pd.DataFrame:
     except (OSError, ValueError) as error:  # pandas' own errors about content are ValueErrors
         reason = getattr(error, "strerror", None) or "not a CSV table"
         raise ValueError(
-            f"{path} cannot be read ({reason}); give a table such as results/tables/ridge.csv"
+            f"{path} cannot be read ({reason}); give a table such as "
+            "results/tables/described/ridge.csv"
         ) from None
     for name in CAPACITIES:
         if name not in frame.columns or not pd.api.types.is_numeric_dtype(frame[name]):
             raise ValueError(
                 f"{path} has no column {name!r} of numbers; give a table of capacities such as "
-                "results/tables/ridge.csv"
+                "results/tables/described/ridge.csv"
             )
     return frame
 
@@ -62,7 +63,7 @@ def match(old: pd.DataFrame, new: pd.DataFrame) -> tuple[pd.DataFrame, list[str]
 
     Returns:
         A frame of the columns that identify a point, as text, those of the outcomes with the
-        suffixes _old and _new, and ``found``: "both", "old" or "new". And the names of the
+        suffixes _old and _new, and ``side``: "both", "old" or "new". And the names of the
         columns that identify a point.
 
     Raises:
@@ -76,12 +77,12 @@ def match(old: pd.DataFrame, new: pd.DataFrame) -> tuple[pd.DataFrame, list[str]
     points = kept[0]
     sides = [_side(frame, points) for frame in (old, new)]
     side_by_side = sides[0].merge(
-        sides[1], how="outer", on=[*points, "rank"], suffixes=("_old", "_new"), indicator="found",
+        sides[1], how="outer", on=[*points, "rank"], suffixes=("_old", "_new"), indicator="side",
         validate="one_to_one",
     )  # fmt: skip
     names = {"left_only": "old", "right_only": "new"}
-    side_by_side["found"] = side_by_side["found"].astype(str).replace(names)
-    if not (side_by_side["found"] == "both").any():
+    side_by_side["side"] = side_by_side["side"].astype(str).replace(names)
+    if not (side_by_side["side"] == "both").any():
         raise ValueError(
             "no row of one table has its design point in the other; give two tables of one study "
             "and config"
@@ -92,12 +93,12 @@ def match(old: pd.DataFrame, new: pd.DataFrame) -> tuple[pd.DataFrame, list[str]
 def _side(frame: pd.DataFrame, points: list[str]) -> pd.DataFrame:
     """Outcomes that are compared, by the design point as text and a number within it."""
     by_mesh = [name for name in tables.NUMERICS if name in frame.columns]
-    made = frame.sort_values(by_mesh, kind="stable") if by_mesh else frame
+    rows = frame.sort_values(by_mesh, kind="stable") if by_mesh else frame
     # as text, because an empty cell turns a column of whole numbers into one of decimals
-    made = made.assign(**{name: made[name].map(_text) for name in points})
-    status = made["status"] if "status" in made.columns else "ok"
-    made = made[[*points, *CAPACITIES]].assign(status=status)
-    return made.assign(rank=made.groupby(points).cumcount() if points else range(len(made)))
+    rows = rows.assign(**{name: rows[name].map(_text) for name in points})
+    status = rows["status"] if "status" in rows.columns else "ok"
+    rows = rows[[*points, *CAPACITIES]].assign(status=status)
+    return rows.assign(rank=rows.groupby(points).cumcount() if points else range(len(rows)))
 
 
 def _text(value) -> str:
@@ -106,14 +107,14 @@ def _text(value) -> str:
 
 
 def moves(matched: pd.DataFrame) -> pd.DataFrame:
-    """The moves of C_nl and C_m in rows found in both tables: columns c_nl and c_m, infinite
+    """The moves of C_nl and C_m in rows of both tables: columns c_nl and c_m, infinite
     where the status changed or a capacity is known on one side only."""
-    made = {}
+    largest = {}
     for name in CAPACITIES:
         old, new = matched[f"{name}_old"], matched[f"{name}_new"]
         moved = (new - old).abs().round(DIGITS).mask(old.isna() & new.isna(), 0.0)
-        made[name] = moved.mask(matched["status_old"] != matched["status_new"]).fillna(np.inf)
-    return pd.DataFrame(made)
+        largest[name] = moved.mask(matched["status_old"] != matched["status_new"]).fillna(np.inf)
+    return pd.DataFrame(largest)
 
 
 def report(old: pd.DataFrame, new: pd.DataFrame, tolerance: float) -> tuple[str, bool]:
@@ -134,10 +135,10 @@ def report(old: pd.DataFrame, new: pd.DataFrame, tolerance: float) -> tuple[str,
         )
         return " -> ".join(states)
 
-    matched = rows[rows["found"] == "both"]
+    matched = rows[rows["side"] == "both"]
     lines = [f"{len(matched)} rows in both tables"]
     for side in ("old", "new"):
-        alone = rows[rows["found"] == side]
+        alone = rows[rows["side"] == side]
         lines.append(f"{len(alone)} only in the {side} one")
         lines += [f"  {at(row)}" for _, row in alone.iterrows()]
     moved = moves(matched)

@@ -96,7 +96,7 @@ def read(name: str, tables: Path) -> tuple[pd.DataFrame | None, dict[str, str]]:
     if last == "claims":
         frame = claims(tables)
         return frame, {} if frame is None else {name.replace("_", " "): name for name in frame}
-    kind = "baselines" if last.endswith(("_floors", "_baselines")) else last
+    kind = "baselines" if last.endswith("_baselines") else last
     if kind not in TABLES:
         raise ValueError(f"table {name!r} is not known; choose one of {', '.join(TABLES)}")
     if not (path := tables / f"{name}.csv").exists():

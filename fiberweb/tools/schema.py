@@ -9,9 +9,10 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from fiberweb.config import Config, Section
+from fiberweb.config import Config
+from fiberweb.sections import Section
 
-FOLDER = Path(__file__).parent.parent / "config"
+FOLDER = Path(__file__).parents[2] / "config"
 TABLE_STARTS = "<!-- The table is written by `python -m fiberweb.tools.schema`. -->\n"
 
 

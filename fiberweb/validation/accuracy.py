@@ -16,22 +16,23 @@ import numpy as np
 import pandas as pd
 
 from fiberweb.engines import load
-from fiberweb.engines.base import Numerics, steps_per_sample
-from fiberweb.engines.stability import largest_step
+from fiberweb.engines.base import Numerics, fitted_step
 from fiberweb.model import authors
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.network import crosshatch
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import capacity
-from fiberweb.simulation.plan import SAFETY
+from fiberweb.simulation.plan import ACCURACIES, SAFETY
 from fiberweb.simulation.response import response
 
 RUN = 100.0  # s of simulated time that `seconds_per_run` is for
-ORDER = 4  # of the reference, in the element length
-FINEST = 32  # elements per section of the finest run
+ORDER = 4  # of the reference, in the element length: tests/engines/test_convergence.py
+FINEST = 32  # elements per section of the finest run; the error at 16 is 2e-4 already
 TIMED = 0.4  # s of CPU in a timing window of a planar engine, at least
 REPEATS = 3  # windows; the fastest counts
-COMPARED = 20_000  # steps over which the planar Cosserat engine is held against PyElastica
+COMPARED = 20_000  # steps of the cosserat engine against PyElastica, as in that test
+SLOW = 8  # N of a crosshatch from which on the slower engines have one mesh only: minutes a run
+STAND_IN = {"elastica": "cosserat"}  # to round-off: tests/engines/test_equality.py
 STIFF = authors.PHYSICS["crosshatch"]["crossing_stiffness"]  # N/m: far stiffer than the fibres
 
 COLUMNS = (
@@ -50,7 +51,8 @@ class Case:
     """A network and how it is integrated.
 
     `elements` None is the authors' mesh; `step` is in s, or None for `share` of the limit;
-    `order` is the kirchhoff engine's; `crossing` overrides its stiffness and damping.
+    `order` is that of an engine that has several, None for the highest; `crossing` overrides
+    its stiffness and damping.
     """
 
     engine: str
@@ -61,7 +63,7 @@ class Case:
     setup: str = "described"
     share: float = SAFETY
     step: float | None = None
-    order: int = ORDER
+    order: int | None = None
     crossing: tuple[float, float] | None = None
 
     def mesh(self, duration: float) -> Mesh:
@@ -80,15 +82,14 @@ class Case:
 
     def numerics(self, mesh: Mesh) -> Numerics:
         """Its numerics, with the step that is really taken."""
-        step = self.step or self.share * largest_step(mesh, self.engine)
-        step = 1.0 / (mesh.scene.sample_rate * steps_per_sample(mesh.scene, step))
-        return Numerics(self.engine, self.elements, step)
+        step = self.step or self.share * load(self.engine).largest_step(mesh)
+        return Numerics(self.engine, self.elements, fitted_step(mesh.scene, step)[0])
 
     def run(self, duration: float):
         """Mesh, numerics and recording of a run of this length (s)."""
         mesh = self.mesh(duration)
         numerics = self.numerics(mesh)
-        options = {"order": self.order} if self.engine == "kirchhoff" else {}
+        options = {} if self.order is None else {"order": self.order}
         return mesh, numerics, load(self.engine).integrate(mesh, numerics, **options)
 
     def trajectory(self, duration: float) -> np.ndarray:
@@ -107,16 +108,14 @@ class Case:
         """
         mesh = self.mesh(RUN)
         numerics = self.numerics(mesh)
-        per_step = _elastica_time(mesh, numerics, window)
-        if self.engine != "elastica":
-            per_step = self._planar_time()
-        step = numerics.time_step
+        planar, step = load(self.engine).PLANAR, numerics.time_step
+        per_step = self._run_time() if planar else _step_time(mesh, numerics, window)
         return step, per_step * RUN / step, 1e9 * per_step / mesh.elements
 
-    def _planar_time(self) -> float:
+    def _run_time(self) -> float:
         """CPU seconds a step; the window is doubled until it is long enough to be timed."""
-        duration, found = 0.1, []
-        while len(found) < REPEATS:
+        duration, times = 0.1, []
+        while len(times) < REPEATS:
             mesh = self.mesh(duration)
             start = time.process_time()
             numerics = self.run(duration)[1]
@@ -124,14 +123,12 @@ class Case:
             if taken < TIMED and duration < RUN:
                 duration = min(RUN, 2.0 * duration)
                 continue
-            found.append(taken * numerics.time_step / mesh.scene.duration)
-        return min(found)
+            times.append(taken * numerics.time_step / mesh.scene.duration)
+        return min(times)
 
 
-def _elastica_time(mesh: Mesh, numerics: Numerics, window: int) -> float:
-    """CPU seconds a step of PyElastica; 0 for another engine."""
-    if numerics.engine != "elastica":
-        return 0.0
+def _step_time(mesh: Mesh, numerics: Numerics, window: int) -> float:
+    """CPU seconds a step of PyElastica, which Python steps one by one."""
     import elastica
 
     engine = load("elastica")
@@ -143,9 +140,9 @@ def _elastica_time(mesh: Mesh, numerics: Numerics, window: int) -> float:
     return (time.process_time() - start) / window
 
 
-def difference(found: np.ndarray, reference: np.ndarray) -> float:
+def difference(trajectory: np.ndarray, reference: np.ndarray) -> float:
     """Rms of the difference of two trajectories over the rms of the second."""
-    return float(np.sqrt(np.mean((found - reference) ** 2) / np.mean(reference**2)))
+    return float(np.sqrt(np.mean((trajectory - reference) ** 2) / np.mean(reference**2)))
 
 
 def extrapolate(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
@@ -155,22 +152,22 @@ def extrapolate(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
 
 def cases(n: int, length: float, buckling: float) -> list[Case]:
     """The engines, meshes and steps of one network in the described setup."""
-    about = {"n": n, "length": length, "buckling": buckling}
-    listed = [Case("kirchhoff", elements=e, **about) for e in (2, 4, 8, 16)]
-    listed += [Case("kirchhoff", elements=4, share=share, **about) for share in (0.45, 0.225)]
-    listed += [Case("cosserat", elements=4, **about)]
-    listed += [Case("cosserat", elements=8, **about)] if n < 8 else []
-    spatial = [4, 8] if n < 8 else [4]
-    listed += [Case("elastica", elements=e, step=authors.STEP, **about) for e in spatial]
-    listed += [Case(e, elements=None, step=authors.STEP, **about) for e in ("cosserat", "elastica")]
-    return listed
+    network = {"n": n, "length": length, "buckling": buckling}
+    meshes = [4, 8] if n < SLOW else [4]  # elements per section of the slower engines
+    return [
+        *(Case("kirchhoff", elements=e, **network) for e in ACCURACIES.values()),
+        *(Case("kirchhoff", elements=4, share=SAFETY / k, **network) for k in (2, 4)),
+        *(Case("cosserat", elements=e, **network) for e in meshes),
+        *(Case("elastica", elements=e, step=authors.STEP, **network) for e in meshes),
+        *(Case(e, elements=None, step=authors.STEP, **network) for e in ("cosserat", "elastica")),
+    ]
 
 
 def planar(case: Case) -> Case:
     """The case whose errors stand for one: the cosserat engine for PyElastica, and for the
     authors' mesh the nearest with crossings on nodes, whose places 10 mm elements round."""
     elements = case.elements or round(case.mesh(1.0).scene.network.spacing / authors.ELEMENT)
-    return replace(case, engine=_planar(case.engine), elements=elements)
+    return replace(case, engine=STAND_IN.get(case.engine, case.engine), elements=elements)
 
 
 def speed_accuracy(
@@ -191,34 +188,31 @@ def speed_accuracy(
         window: steps in which PyElastica is timed.
         workers: threads for the long runs; nothing is timed meanwhile.
     """
-    frames = []
+    rows = []
     for n in networks:
-        listed = cases(n, length, buckling)
-        costs = [case.cost(window) for case in listed]
-        run = [planar(case) for case in listed]
-        about = {"n": n, "length": length, "buckling": buckling}
-        pair = [Case("kirchhoff", elements=e, **about) for e in (FINEST // 2, FINEST)]
-        at = {case: i for i, case in enumerate(dict.fromkeys(run + pair))}
-        distinct = list(at)
+        timed = cases(n, length, buckling)
+        costs = [case.cost(window) for case in timed]
+        stand_ins = [planar(case) for case in timed]
+        network = {"n": n, "length": length, "buckling": buckling}
+        pair = [Case("kirchhoff", elements=e, **network) for e in (FINEST // 2, FINEST)]
+        distinct = list(dict.fromkeys(stand_ins + pair))
         with ThreadPoolExecutor(workers) as pool:
-            moved = list(pool.map(lambda case: case.trajectory(seconds), distinct))
-            scored = list(pool.map(lambda case: case.capacities(duration), distinct))
-        converged = extrapolate(*(moved[at[case]] for case in pair))
-        best = extrapolate(*(scored[at[case]] for case in pair))
+            trajectories = pool.map(lambda case: case.trajectory(seconds), distinct)
+            capacities = pool.map(lambda case: case.capacities(duration), distinct)
+            trajectories = dict(zip(distinct, trajectories))
+            capacities = dict(zip(distinct, capacities))
+        converged = extrapolate(*(trajectories[case] for case in pair))
+        best = extrapolate(*(capacities[case] for case in pair))
         yardstick = costs[-1][1]
-        for case, alias, (step, cpu, ns) in zip(listed, run, costs):
-            c_nl, c_m = np.abs(scored[at[alias]] - best)
-            error = difference(moved[at[alias]], converged)
-            frames.append(
+        for case, alias, (step, cpu, ns) in zip(timed, stand_ins, costs):
+            c_nl, c_m = np.abs(capacities[alias] - best)
+            error = difference(trajectories[alias], converged)
+            rows.append(
                 (case.engine, case.setup, f"{n}x{n}", case.elements or "authors", step, cpu, ns,
                  error, c_nl, c_m, yardstick / cpu, f"{alias.engine}, {alias.elements} a section")
             )  # fmt: skip
-        frames += _published(n, length, window)
-    return pd.DataFrame(frames, columns=COLUMNS)
-
-
-def _planar(engine: str) -> str:
-    return "cosserat" if engine == "elastica" else engine
+        rows += _published(n, length, window)
+    return pd.DataFrame(rows, columns=COLUMNS)
 
 
 def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
@@ -229,17 +223,17 @@ def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
         checked: from `exudyn_check.table`.
     """
     rows = checked[checked["against"] == "kirchhoff"]
-    made = rows[["engine", "network", "elements_per_section", "time_step"]].assign(
+    errors = rows[["engine", "network", "elements_per_section", "time_step"]].assign(
         setup="described", trajectory_error=rows["difference"], errors_from=rows["engine"]
     )
-    return made.reindex(columns=list(COLUMNS))
+    return errors.reindex(columns=list(COLUMNS))
 
 
 def _published(n: int, length: float, window: int) -> list[tuple]:
     """The published setup, which PyElastica defines: its error is zero, and that of the planar
     engine is how far it departs within `COMPARED` steps."""
-    about = {"elements": None, "length": length, "setup": "published", "step": authors.STEP}
-    pair = [Case(engine, n, **about) for engine in ("cosserat", "elastica")]
+    setup = {"elements": None, "length": length, "setup": "published", "step": authors.STEP}
+    pair = [Case(engine, n, **setup) for engine in ("cosserat", "elastica")]
     compared = COMPARED * authors.STEP
     planar, spatial = (case.trajectory(compared) for case in pair)
     errors = [(difference(planar, spatial), np.nan, np.nan, "elastica"), (0.0, 0.0, 0.0, "itself")]
@@ -264,7 +258,7 @@ def rungs(length: float, buckling: float) -> list[tuple[str, str, Case]]:
         ("planar", "motion in the plane", replace(planar, step=same)),
         ("unshearable", "no shear, no rotary inertia", replace(lumped, step=same)),
         ("step", "the longer step this allows", lumped),
-        ("fourth order", "fourth-order bending", replace(lumped, order=4)),
+        ("fourth order", "fourth-order bending", replace(lumped, order=None)),
         ("mesh", "4 elements a section, not 8", default),
         ("pins", "crossings of 1e6 N/m, no damper", stiff),
         ("merged", "such crossings as one point", replace(default, crossing=(np.inf, 0.0))),
@@ -278,26 +272,25 @@ def ladder(
 
     PyElastica runs for `window` steps only and is not scored. Arguments: see `speed_accuracy`.
     """
-    listed = rungs(length, buckling)
-    costs = [case.cost(window) for _, _, case in listed]
+    names, changes, steps = zip(*rungs(length, buckling))
+    costs = [case.cost(window) for case in steps]
+    unknown = np.full(2, np.nan)
     with ThreadPoolExecutor(workers) as pool:
-        planar = [case for _, _, case in listed[1:]]
-        moved = [None, *pool.map(lambda case: case.trajectory(seconds), planar)]
-        unknown = np.full(2, np.nan)
-        scored = [unknown, *pool.map(lambda case: case.capacities(duration), planar)]
+        trajectories = [None, *pool.map(lambda case: case.trajectory(seconds), steps[1:])]
+        capacities = [unknown, *pool.map(lambda case: case.capacities(duration), steps[1:])]
     brief = window * costs[0][0]
     rows = []
-    for i, (name, change, case) in enumerate(listed):
-        over, moves = (seconds if i else np.nan), np.nan
+    for i, case in enumerate(steps):
+        compared, moves = (seconds if i else np.nan), np.nan
         if i == 1:
-            over = brief
-            moves = difference(case.trajectory(brief), listed[0][2].trajectory(brief))
+            compared = brief
+            moves = difference(case.trajectory(brief), steps[0].trajectory(brief))
         elif i > 1:
-            moves = difference(moved[i], moved[i - 1])
-        changes = np.abs(scored[i] - scored[i - 1]) if i > 1 else unknown
-        (c_nl, c_m), (d_nl, d_m) = scored[i], changes
+            moves = difference(trajectories[i], trajectories[i - 1])
+        c_nl, c_m = capacities[i]
+        d_nl, d_m = np.abs(capacities[i] - capacities[i - 1]) if i > 1 else unknown
         rows.append(
-            (name, change, case.engine, case.elements, costs[i][0], costs[i][1], over, moves,
+            (names[i], changes[i], case.engine, case.elements, *costs[i][:2], compared, moves,
              c_nl, d_nl, c_m, d_m)
         )  # fmt: skip
     return pd.DataFrame(rows, columns=LADDER_COLUMNS)

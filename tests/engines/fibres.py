@@ -11,12 +11,12 @@ from scipy.optimize import brentq
 
 from fiberweb import engines
 from fiberweb.engines.base import Numerics
-from fiberweb.engines.cosserat import SHEAR_FACTOR
+from fiberweb.engines.cosserat_stiffness import SHEAR_FACTOR
 from fiberweb.model.mesh import Mesh, Readout, build
 from fiberweb.model.network import Network
 from fiberweb.model.scene import Scene
 
-ENGINES = ("kirchhoff", "cosserat", "elastica")
+ENGINES = tuple(engines.ENGINES)
 PLANAR = ("kirchhoff", "cosserat")
 # a smooth bump: the cubic B-spline over four knot intervals, highest power first
 BUMP = np.array([[1, 0, 0, 0], [-3, 3, 3, 1], [3, -6, 0, 4], [-1, 3, -3, 1]]) / 6
@@ -91,6 +91,11 @@ def sampled(mesh: Mesh, step: float, samples: int, every: int = 1) -> Mesh:
     """The mesh recorded at t = 0 and each `every` steps of exactly `step` seconds."""
     scene = replace(mesh.scene, sample_rate=1.0 / (every * step), duration=samples * every * step)
     return replace(mesh, scene=scene)
+
+
+def largest_step(mesh: Mesh, engine: str) -> float:
+    """The largest stable step (s) of an engine."""
+    return engines.load(engine).largest_step(mesh)
 
 
 def run(mesh: Mesh, engine: str, step: float, samples: int, every: int = 1) -> np.ndarray:

@@ -7,7 +7,6 @@ import pytest
 
 from fiberweb import engines
 from fiberweb.engines.base import Numerics
-from fiberweb.engines.stability import largest_step
 from fiberweb.model.mesh import build
 from fiberweb.model.network import crosshatch
 from fiberweb.model.scene import Scene
@@ -18,6 +17,7 @@ from tests.engines.fibres import (
     every_node,
     fibre,
     first_frequency,
+    largest_step,
     pulled,
     run,
     sampled,

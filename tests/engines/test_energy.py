@@ -1,4 +1,4 @@
-"""The energy books of the planar engines: what a run's drive and pull give is what it holds or
+"""The energy ledger of the planar engines: what a run's drive and pull give is what it holds or
 has lost.
 
 Bounds are several times what was measured. What remains of the residual: what is dissipated is
@@ -15,10 +15,10 @@ import pytest
 
 from fiberweb import engines, simulate
 from fiberweb.engines.base import Numerics
-from fiberweb.engines.stability import largest_step
 from fiberweb.model.mesh import build
 from fiberweb.model.network import crosshatch, polygon
 from fiberweb.model.scene import Scene
+from tests.engines.fibres import largest_step
 
 SMALL = crosshatch(2, spacing=0.1)
 GRID = crosshatch(4, length=0.5)
@@ -39,7 +39,7 @@ DRIVEN = [  # network, setup, engine, elements per section, bound on the residua
 
 
 @pytest.mark.parametrize("network, setup, engine, elements, bound", DRIVEN)
-def test_books_of_a_driven_run_close(network, setup, engine, elements, bound):
+def test_ledger_of_a_driven_run_closes(network, setup, engine, elements, bound):
     scene = Scene(network, setup=setup, duration=1.0)
     response = simulate(scene, engine=engine, elements_per_section=elements)
     assert response.attrs["status"] == "ok"
@@ -55,7 +55,7 @@ def test_books_of_a_driven_run_close(network, setup, engine, elements, bound):
 
 @pytest.mark.parametrize("engine", ["kirchhoff", "cosserat"])
 @pytest.mark.parametrize("tension, bound", [(0.01, 2e-4), (0.5, 3e-3)])
-def test_the_ramp_of_the_tension_is_booked(engine, tension, bound):
+def test_the_ramp_of_the_tension_is_entered(engine, tension, bound):
     """Until the ramp ends the pull does work that is no difference of potential. A strong one
     starts axial waves, which leapfrog's half step between the two energies shows."""
     scene = Scene(SMALL, duration=0.3, tension=tension, tension_ramp=0.2)

@@ -8,10 +8,9 @@ import pytest
 from fiberweb import Scene, crosshatch, engines, polygon, score, simulate
 from fiberweb.engines import kirchhoff
 from fiberweb.engines.base import Numerics
-from fiberweb.engines.stability import largest_step
 from fiberweb.model.mesh import build
 from tests.engines import oracle
-from tests.engines.fibres import every_node, sampled
+from tests.engines.fibres import every_node, largest_step, sampled
 
 
 def moved(mesh, engine, step, **kwargs):

@@ -6,12 +6,12 @@ from elastica import PositionVerlet
 
 from fiberweb.engines import elastica, kirchhoff
 from fiberweb.engines.base import Numerics
-from fiberweb.engines.stability import largest_step
 from tests.engines.fibres import (
     ENGINES,
     fibre,
     first_frequency,
     free,
+    largest_step,
     run,
     sampled,
     struck,
@@ -106,7 +106,7 @@ def test_energy_of_an_undamped_kirchhoff_fibre(order):
     assert np.ptp(energy) < 5e-6 * energy.mean()
     drift = np.polyfit(np.linspace(0.0, 1.0, steps), energy, 1)[0]
     assert abs(drift) < 1e-7 * energy.mean()
-    # the engine's own books say the same
+    # the engine's own ledger says the same
     np.testing.assert_allclose(recording.energy[after:, 0], kinetic, atol=1e-8 * energy.mean())
     np.testing.assert_allclose(recording.energy[after:, 1], elastic, atol=1e-8 * energy.mean())
 

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from fiberweb.engines.stability import largest_step
 from fiberweb.model.mesh import build
 from fiberweb.simulation.plan import safety, stubby
 from fiberweb.validation.limits import (
@@ -20,6 +19,7 @@ from fiberweb.validation.limits import (
     run_for,
     status,
 )
+from tests.engines.fibres import largest_step
 
 STEPS = 2000  # an instability a ten-thousandth above the limit grows by e^50
 BOUNDED = 4000  # of the random runs

@@ -7,10 +7,17 @@ import pytest
 
 from fiberweb import Scene, crosshatch, engines, simulate
 from fiberweb.engines.base import Numerics
-from fiberweb.engines.cosserat import SHEAR_FACTOR
-from fiberweb.engines.stability import largest_step
+from fiberweb.engines.cosserat_stiffness import SHEAR_FACTOR
 from fiberweb.model.mesh import build
-from tests.engines.fibres import ENGINES, every_node, fibre, sampled, side_by_side, struck
+from tests.engines.fibres import (
+    ENGINES,
+    every_node,
+    fibre,
+    largest_step,
+    sampled,
+    side_by_side,
+    struck,
+)
 
 STEPS = 4000  # at 5 % above the limit a mode grows by 1.4 to 1.9 a step
 CROSSINGS = {

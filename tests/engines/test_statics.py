@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fiberweb.engines.stability import largest_step
 from tests.engines.fibres import (
     ENGINES,
     fibre,
     first_frequency,
+    largest_step,
     pulled,
     settle,
     side_by_side,

@@ -5,12 +5,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fiberweb.engines.stability import largest_step
 from tests.engines.fibres import (
     ENGINES,
     fibre,
     first_frequency,
     frequencies,
+    largest_step,
     pulled,
     run,
     side_by_side,

@@ -1,11 +1,39 @@
-"""Whether the words of a figure can be read."""
+"""What a figure says and marks, and whether its words can be read."""
 
 import itertools
 
+import pandas as pd
 import pytest
 from matplotlib.text import Text
 
 from fiberweb.figures import style
+
+
+BASELINES = pd.DataFrame(
+    {
+        "readout": ["u", "derivatives", "powers"],
+        "c_nl": [0.14, 0.14, 0.41],
+        "c_m": [0.09, 0.28, 0.09],
+    }
+)
+
+
+def said(figure):
+    """Every text that is drawn, one after the other."""
+    return " ".join(text.get_text() for text in figure.findobj(Text) if text.get_visible())
+
+
+def marked(artist, gid="unstable"):
+    """What is drawn inside it with this id, the X's of unstable runs unless told otherwise."""
+    return artist.findobj(lambda one: one.get_gid() == gid)
+
+
+def assert_written(path, width=style.DOUBLE):
+    """PNG and PDF are there, and as wide as a figure in the paper (mm) at 300 dpi."""
+    header = path.with_suffix(".png").read_bytes()[:24]
+    assert header[:8] == b"\x89PNG\r\n\x1a\n"
+    assert int.from_bytes(header[16:20]) == pytest.approx(width / 25.4 * 300, abs=1)
+    assert path.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
 
 
 def assert_legible(figure):

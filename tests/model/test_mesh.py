@@ -1,4 +1,4 @@
-"""Meshes: what is cut where, what acts on which node, and the authors' own mesh."""
+"""Meshes: what is cut where, and what acts on which node."""
 
 import numpy as np
 import pytest
@@ -82,71 +82,6 @@ def test_all_pairs_meet_where_several_fibres_do():
     centred = np.linalg.norm(mesh.position[mesh.joints[:, 0]], axis=1) < 1e-9
     assert centred.sum() == 3
     assert len(mesh.joints) == 12 + 3
-
-
-@pytest.mark.parametrize("n", [2, 4, 6, 8, 10, 12])
-def test_authors_mesh_at_500_mm(n):
-    """50 elements of 10 mm; crossings on nodes int(linspace(0, 51, N + 2)), the fibres laid
-    through them, so that no joint starts with a gap; midpoints rounded down likewise."""
-    mesh = build(Scene(crosshatch(n, length=0.5), setup="published"))
-    assert mesh.elements == 2 * n * 50
-    np.testing.assert_allclose(mesh.edges(0), 0.01)
-    grid = np.linspace(0, 51, n + 2)
-    expected = grid[1:-1].astype(int)
-    crossings = [r for r in mesh.readouts if r.kind == "crossing"]
-    for fibre in range(n):
-        at = [r.nodes[0] - mesh.first[fibre] for r in crossings if r.fibre == fibre]
-        np.testing.assert_array_equal(at, expected)
-        np.testing.assert_allclose(
-            mesh.position[mesh.first[fibre] : mesh.first[fibre + 1], 1], 0.01 * expected[fibre]
-        )
-    a, b = mesh.joints.T
-    assert len(a) == n * n
-    np.testing.assert_allclose(mesh.position[a], mesh.position[b], atol=1e-12)
-    middles = (0.5 * (grid[1:] + grid[:-1])).astype(int)
-    places = rest(mesh)[[r.kind == "horizontal_midpoint" and r.fibre == 0 for r in mesh.readouts]]
-    np.testing.assert_allclose(places[:, 0], 0.01 * middles, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("spacing", "elements", "size"),
-    [(0.02, 20, 5e-3), (0.03, 30, 5e-3), (0.04, 50, 4e-3), (0.1, 50, 10e-3), (0.15, 75, 10e-3)],
-)
-def test_authors_elements_at_other_spacings(spacing, elements, size):
-    """10 mm and at least 50 a fibre, but 5 mm at 20 and 30 mm; 4x4."""
-    mesh = build(Scene(crosshatch(4, spacing=spacing), setup="published"))
-    np.testing.assert_allclose(mesh.edges(0), size)
-    assert len(mesh.edges(0)) == elements
-
-
-@pytest.mark.parametrize(("n", "fibre"), [(2, 0), (4, 2), (6, 3)])
-def test_authors_load(n, fibre):
-    """Five nodes about the middle of fibre N // 2 (0 for N = 2), weights skewed, downwards."""
-    scene = Scene(crosshatch(n, length=0.5), setup="published")
-    mesh = build(scene)
-    loaded = np.flatnonzero(mesh.load.any(axis=1))
-    np.testing.assert_array_equal(loaded, mesh.first[fibre] + 25 + np.arange(-2, 3))
-    weights = mesh.load[loaded, 1] / scene.force
-    np.testing.assert_allclose(weights, [-0.1875, -0.125, -0.125, -0.1875, -0.375])
-    assert weights.sum() == pytest.approx(-1.0)
-    assert not mesh.load[:, 0].any()
-
-
-def test_authors_polygon():
-    """Ends joined at the vertices; a hundredth of the stiffness between diagonals, one pair of
-    which stays free; diameters alone are pulled."""
-    network = polygon(6, diagonals="skip-one")
-    mesh = build(Scene(network, setup="published"))
-    fibre_of = np.repeat(np.arange(len(network.fibres)), np.diff(mesh.first))
-    a, b = mesh.joints.T
-    ends = np.isin(a, mesh.first[:-1]) | np.isin(a + 1, mesh.first[1:])
-    diagonals = (fibre_of[a] >= 3) & (fibre_of[b] >= 3) & ~ends
-    np.testing.assert_allclose(mesh.joint_stiffness[diagonals], 10.0)
-    np.testing.assert_allclose(mesh.joint_stiffness[~diagonals], 1e3)
-    assert diagonals.sum() == 6 - 1  # neighbouring short diagonals cross in six points
-    assert ends.sum() == 6 * 3  # three fibres end at each vertex
-    pulled = np.unique(fibre_of[mesh.pull.any(axis=1)])
-    np.testing.assert_array_equal(pulled, [0, 1, 2])
 
 
 @pytest.mark.parametrize(

@@ -22,13 +22,13 @@ def count(group, n):
     ],
 )
 def test_readouts_are_those_that_a_simulation_records(network, setup):
-    made = groups.readouts(network)
+    points = groups.readouts(network)
     mesh = build(Scene(network, setup), elements_per_section=4)
-    assert list(made["kind"]) == [readout.kind for readout in mesh.readouts]
-    assert list(made["fibre"]) == [readout.fibre for readout in mesh.readouts]
-    assert list(made["section"]) == [readout.section for readout in mesh.readouts]
+    assert list(points["kind"]) == [readout.kind for readout in mesh.readouts]
+    assert list(points["fibre"]) == [readout.fibre for readout in mesh.readouts]
+    assert list(points["section"]) == [readout.section for readout in mesh.readouts]
     places = [np.dot(r.weights, mesh.position[list(r.nodes)]) for r in mesh.readouts]
-    np.testing.assert_allclose(made[["x", "y"]], places, atol=1e-9)
+    np.testing.assert_allclose(points[["x", "y"]], places, atol=1e-9)
 
 
 @pytest.mark.parametrize(

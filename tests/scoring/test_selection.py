@@ -35,8 +35,8 @@ def test_effective_rank_of_two_correlated_signals_is_the_formula():
     a, b = np.linalg.qr(np.column_stack([np.ones(100), np.eye(100)[:, :2]]))[0][:, 1:].T
     share = np.sqrt([1.6, 0.4]) / np.sqrt([1.6, 0.4]).sum()  # correlation 0.6
     expected = np.exp(-(share * np.log(share)).sum())
-    found = selection.effective_rank(np.column_stack([a, 0.6 * a + 0.8 * b]))
-    assert found == pytest.approx(expected)
+    rank = selection.effective_rank(np.column_stack([a, 0.6 * a + 0.8 * b]))
+    assert rank == pytest.approx(expected)
 
 
 def test_effective_rank_of_nothing_is_refused():
@@ -47,19 +47,21 @@ def test_effective_rank_of_nothing_is_refused():
 @pytest.mark.parametrize("target", ["c_nl", "c_m"])
 def test_totals_are_those_of_the_clean_scoring(run, target):
     u, readouts = run
-    found = selection.forward(u, readouts, RATE, target, alpha=0.1)
-    assert sorted(found.signal) == list(range(9))  # the last one stands still
+    selected = selection.forward(u, readouts, RATE, target, alpha=0.1)
+    assert sorted(selected.signal) == list(range(9))  # the last one stands still
     for k in (1, 4, 9):
-        some = readouts[:, found.signal[:k]]
+        some = readouts[:, selected.signal[:k]]
         expected = capacity.score_arrays(u, some, RATE, alpha=0.1)
         for name in ("c_nl", "c_m", "c_nl_train", "c_m_train"):
-            assert getattr(found, name)[k - 1] == pytest.approx(getattr(expected, name), abs=1e-9)
+            assert getattr(selected, name)[k - 1] == pytest.approx(
+                getattr(expected, name), abs=1e-9
+            )
 
 
 def test_each_step_takes_what_helps_training_most(run):
     u, readouts = run
-    found = selection.forward(u, readouts, RATE, "c_nl", alpha=1e-6)
-    taken = list(found.signal[:2])
+    selected = selection.forward(u, readouts, RATE, "c_nl", alpha=1e-6)
+    taken = list(selected.signal[:2])
     for k, signal in enumerate(taken):
         scores = {
             other: capacity.score_arrays(u, readouts[:, [*taken[:k], other]], RATE, alpha=1e-6)

@@ -11,22 +11,22 @@ PAPER = Scene(crosshatch(4, length=0.5))
 
 def lines(scene, accuracy=None, **numerics):
     """The explanation, by the word before each colon; several warnings are joined."""
-    found = {}
+    texts = {}
     for line in explain(scene, accuracy, **numerics).splitlines():
         key, text = line.split(": ", 1)
-        found[key] = found.get(key, "") + text
-    return found
+        texts[key] = texts.get(key, "") + text
+    return texts
 
 
 @pytest.mark.parametrize(("accuracy", "elements"), ACCURACIES.items())
 def test_every_accuracy_names_engine_mesh_and_error(accuracy, elements):
-    found = lines(PAPER, accuracy)
-    assert found["choice"] == (
-        f"kirchhoff engine, {elements} elements a section (accuracy {accuracy})"
+    texts = lines(PAPER, accuracy)
+    assert texts["choice"] == (
+        f"kirchhoff engine, {elements} elements per section (accuracy {accuracy})"
     )
-    assert "% of the trajectories' rms at B = 0.8" in found["error"]
-    assert f"{4 * 2 * 5 * elements} elements" in found["cost"]
-    assert "beware" not in found
+    assert "% of the trajectories' rms at B = 0.8" in texts["error"]
+    assert f"{4 * 2 * 5 * elements} elements" in texts["cost"]
+    assert "beware" not in texts
 
 
 def test_errors_fall_with_accuracy():
@@ -53,10 +53,10 @@ def test_a_forced_step_is_owned_up_to():
 
 
 def test_published_setup():
-    found = lines(Scene(crosshatch(4, length=0.5), "published"))
-    assert "cosserat engine, the authors' mesh" in found["choice"]
-    assert found["error"].startswith("none against the authors' own numbers")
-    assert "shear" not in found["left out"] and "out-of-plane" in found["left out"]
+    texts = lines(Scene(crosshatch(4, length=0.5), "published"))
+    assert "cosserat engine, the authors' mesh" in texts["choice"]
+    assert texts["error"].startswith("none against the authors' own numbers")
+    assert "shear" not in texts["left out"] and "out-of-plane" in texts["left out"]
 
 
 @pytest.mark.parametrize(

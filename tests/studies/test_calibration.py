@@ -1,6 +1,7 @@
-"""The grid against the paper's four numbers: the misfit, the best point, and what it says of the
-defaults."""
+"""The grid against the paper's four numbers: the misfit, the best point, what it says of the
+defaults, and the figure."""
 
+import itertools
 import sys
 
 import numpy as np
@@ -11,8 +12,10 @@ import xarray as xr
 from fiberweb import Scene, crosshatch
 from fiberweb.scoring import tables
 from fiberweb.simulation import dataset
+from fiberweb.studies.calibration import figure as plotting
 from fiberweb.studies.calibration import tables as calibration
 from fiberweb.tables import write
+from tests.figures.legible import BASELINES, assert_legible, assert_written, marked, said
 
 EXACT = {"c_p4": 0.999, "c_p7": 0.896, "recall_200ms": 0.997, "recall_400ms": 0.713}
 
@@ -96,8 +99,8 @@ def test_best_is_the_least_misfit_of_the_stable_runs():
 )
 def test_the_verdict_on_the_defaults(misfits, agrees, words):
     """The defaults of the described setup are k = 70 N/m, nu = 3 N s/m and gamma = 2.5 /s."""
-    found, sentence = calibration.verdict(calibration.check(grid(**misfits)))
-    assert found == agrees
+    agreed, sentence = calibration.verdict(calibration.check(grid(**misfits)))
+    assert agreed == agrees
     assert words in sentence
 
 
@@ -131,3 +134,95 @@ def test_the_command_fails_with_one_sentence(monkeypatch, tmp_path, frame, words
     with pytest.raises(SystemExit, match=words) as stopped:
         run_main(monkeypatch, tmp_path / "calibration.csv")
     assert "\n" not in stopped.value.code  # text: Python prints it and exits with 1
+
+
+# --- the figure ---
+
+
+@pytest.fixture(scope="module")
+def points():
+    """A grid of the calibration whose best point is not the defaults'; one run unstable."""
+    axes = ([40.0, 70.0, 100.0], [2.0, 3.0, 5.0], [1.0, 2.5], [4, 8])
+    rows = [
+        dict(zip((*calibration.GRID, "n"), point, strict=True))
+        | {"setup": "described", "status": "ok", "c_nl": 0.8, "c_m": 0.4}
+        | {"c_nl_se": 0.01, "c_m_se": 0.02}
+        | dict.fromkeys(calibration.TARGETS, 0.9)
+        | {"misfit": point[0] + point[1] + point[2] if point[3] == 8 else np.nan}
+        for point in itertools.product(*axes)
+    ]
+    rows[-1] |= dict.fromkeys(("misfit", *calibration.TARGETS, "c_nl", "c_m"), np.nan)
+    rows[-1]["status"] = "unstable"
+    table = pd.DataFrame(rows)
+    return {
+        "calibration": table, "calibration_check": calibration.check(table), "ridge_baselines": BASELINES
+    }  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def drawn(points, tmp_path_factory):
+    path = tmp_path_factory.mktemp("figures") / "calibration.png"
+    return plotting.draw(points, "described", path), path
+
+
+def test_the_figure_is_written_and_legible(drawn):
+    assert_written(drawn[1])
+    assert_legible(drawn[0])
+
+
+def test_baselines_of_the_calibration_may_be_missing(points, unsaved):
+    tables = {name: table for name, table in points.items() if name != "ridge_baselines"}
+    figure = plotting.draw(tables, "described", "unsaved")
+    assert "readouts made of the input alone" not in said(figure)
+
+
+def test_best_and_defaults_are_marked_where_they_are(drawn):
+    """Best at k = 40, nu = 2, gamma = 1: the first cell of the first map; the defaults, k = 70,
+    nu = 3, gamma = 2.5, in the middle of the second."""
+    figure = drawn[0]
+    first, second = figure.subfigs[0].axes[:2]
+    (star,), (box,) = marked(figure, "best"), marked(figure, "default")
+    assert star.axes is first and np.round(star.get_xydata()).tolist() == [[0, 0]]
+    assert box.axes is second and np.round(box.get_center()).tolist() == [1, 1]
+    (cross,) = marked(figure, "unstable")
+    assert cross.axes is second and cross.get_xydata().tolist() == [[2, 2]]
+    assert "43.0" in said(figure)  # misfit of the best
+
+
+def test_the_best_points_are_listed_by_misfit(drawn, points):
+    ax = drawn[0].subfigs[1].axes[0]
+    labels = [label.get_text().split("   ")[0] for label in ax.get_yticklabels()]
+    assert labels[0] == "40, 2, 1"
+    assert labels[-1] == "70, 3, 2.5"  # the defaults come last where they are not among the best
+    first = points["calibration"].dropna(subset="misfit").sort_values("misfit")
+    first = first[list(calibration.GRID)][: plotting.SHOWN].to_numpy()
+    assert labels[:-1] == ["{:g}, {:g}, {:g}".format(*point) for point in first]
+
+
+def test_a_grid_of_one_point_is_drawn(points, tmp_path):
+    table = points["calibration"]
+    one = table[(table["misfit"] == 75.5)]
+    tables = {"calibration": one, "calibration_check": calibration.check(one)}
+    figure = plotting.draw(tables, "described", tmp_path / "one.png")
+    assert marked(figure, "best") and marked(figure, "default")
+
+
+def test_a_grid_without_a_stable_run_is_x_s(points, unsaved):
+    lost = dict.fromkeys(("misfit", *calibration.TARGETS, "c_nl", "c_m"), np.nan)
+    table = points["calibration"].assign(status="unstable", **lost)
+    tables = {"calibration": table, "calibration_check": calibration.check(table)}
+    figure = plotting.draw(tables, "described", "lost.png")
+    assert [len(mark.get_xdata()) for mark in marked(figure, "unstable")] == [9, 9]
+    assert not marked(figure, "best")
+
+
+def test_every_capacity_of_panel_b_has_its_standard_error_as_a_bar(drawn, points):
+    figure, _ = drawn
+    table = points["calibration"]
+    shown = table[table["misfit"].notna()].sort_values("misfit")[: plotting.SHOWN]
+    shown = [*shown.index, *table.index[(table["misfit"] == 75.5)]]  # and the defaults
+    for ax, name, error in zip(figure.subfigs[1].axes[-2:], ("c_nl", "c_m"), (0.01, 0.02)):
+        dense = ax.containers[1]
+        bars = np.array(dense.lines[2][0].get_segments())
+        np.testing.assert_allclose(bars.mean(axis=1)[:, 0], table.loc[shown, name])
+        np.testing.assert_allclose(np.ptp(bars[:, :, 0], axis=1), 2 * error)

@@ -14,9 +14,9 @@ FLOOR = 3e-4  # a tenth of shear and rotary inertia, the stress laws, and Exudyn
 
 @pytest.fixture(scope="module")
 def table():
-    made = exudyn_check.table()
-    print(made.to_string())
-    return made
+    differences = exudyn_check.table()
+    print(differences.to_string())
+    return differences
 
 
 def rows(table, network, code, against):
@@ -57,8 +57,8 @@ def test_engines_converge_to_exudyn(table, network, engine, against, finest):
 
 
 def test_exudyn_stands_in_the_accuracy_table(table):
-    made = accuracy.exudyn_rows(table)
-    assert list(made.columns) == list(accuracy.COLUMNS)
-    assert set(made["network"]) == set(exudyn_check.SCENES)
-    assert made["trajectory_error"].between(0.0, 2e-3).all()  # shear and rotary inertia, again
-    assert made["seconds_per_run"].isna().all()
+    errors = accuracy.exudyn_rows(table)
+    assert list(errors.columns) == list(accuracy.COLUMNS)
+    assert set(errors["network"]) == set(exudyn_check.SCENES)
+    assert errors["trajectory_error"].between(0.0, 2e-3).all()  # shear and rotary inertia, again
+    assert errors["seconds_per_run"].isna().all()

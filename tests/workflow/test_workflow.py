@@ -1,28 +1,26 @@
 """The DAG: what runs, what runs again, what does not. On a copy of the tree, so that files can be
 edited, and with a kernel cache of its own."""
 
-import ast
 import os
-import re
 import shutil
 import signal
 import subprocess
 import sys
-from pathlib import Path
-from types import SimpleNamespace
 
+import matplotlib as mpl
+import matplotlib.image
+import numpy as np
 import pandas as pd
 import pytest
 
-from fiberweb import config
-from fiberweb.runs import STUDIES, runs
+from fiberweb import config, studies
+from fiberweb.runs import runs
 from fiberweb.simulation import dataset
 from fiberweb.studies.ridge.best import best_unbuckled, read_best
+from tests.workflow.conftest import ROOT, SMOKE
 
-ROOT = Path(__file__).parents[2]
-COPIED = ("Snakefile", "config", "envs", "fiberweb", "profiles", "workflow")
-FINISH = {"topology_tables": 1, "topology_figure": 1, "merge": 2}
-SMOKE = ("--configfile", "config/smoke.yaml", "--config", "results=out")
+FINISH = {"table": 4, "figure": 1}
+STUDIES = [name for name in studies.STUDIES if studies.setups(name)]
 SMALL = """
 scene: {duration: 4.0}
 numerics: {accuracy: draft}
@@ -36,6 +34,7 @@ memory_origin: {n: [2]}
 # the profile asks for an executor that only a cluster's user installs
 CLUSTER = ("--profile", "profiles/slurm", "--executor", "local")
 PAPER = config.load(ROOT / "config" / "config.yaml")
+ALL = config.load(ROOT / "config" / "config.yaml", {"published_all": True})
 
 
 def jobs(count, target="topology"):
@@ -43,76 +42,9 @@ def jobs(count, target="topology"):
     return {"warmup": 1, "simulate": count, "capacity": count, target: 1} | FINISH
 
 
-def names(made, setup, studies=STUDIES, best=None, full=False):
+def names(values, setup, of=STUDIES, best=None):
     """Names of the runs that studies ask for."""
-    return {run.name for study in studies for run in runs(made, study, setup, best, full)}
-
-
-class Tree:
-    """A copy of what the workflow needs, and Snakemake in it."""
-
-    def __init__(self, folder):
-        self.folder = folder / "tree"
-        self.folder.mkdir()
-        for name in COPIED:
-            source = ROOT / name
-            copy = shutil.copytree if source.is_dir() else shutil.copy2
-            copy(source, self.folder / name)
-        self.environment = os.environ | {
-            "PYTHONPATH": str(self.folder),
-            "FIBERWEB_CACHE": str(folder / "cache"),
-        }
-        self.environment.pop("NUMBA_CACHE_DIR", None)
-
-    def snakemake(self, *arguments, cores=2):
-        """Standard error of a call that must succeed."""
-        done = subprocess.run(
-            [sys.executable, "-m", "snakemake", *arguments, "--cores", str(cores)],
-            cwd=self.folder, env=self.environment, capture_output=True, text=True,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout + done.stderr
-
-    def jobs(self, *arguments):
-        """Count of jobs by rule; {} if there is nothing to do."""
-        printed = self.snakemake(*arguments)
-        if "Nothing to be done" in printed:
-            return {}
-        table = printed.split("Job stats:\n")[1].split("\n\n")[0]
-        counts = dict(re.findall(r"^(\w+) +(\d+)$", table, flags=re.MULTILINE))
-        assert int(counts.pop("total")) == sum(map(int, counts.values()))
-        return {rule: int(count) for rule, count in counts.items()}
-
-    def planned(self, *arguments):
-        return self.jobs(*arguments[:1], "--dry-run", *arguments[1:])
-
-
-@pytest.fixture(scope="module")
-def tree(tmp_path_factory):
-    return Tree(tmp_path_factory.mktemp("workflow"))
-
-
-@pytest.fixture(scope="module")
-def smoked(tree):
-    """The tree after the smoke run."""
-    tree.snakemake("figures", *SMOKE)
-    return tree
-
-
-@pytest.fixture
-def edited(smoked):
-    """Append a line to a file of the tree; undone after the test, time stamps included."""
-    kept = []
-
-    def edit(name, text="\n# edited\n"):
-        path = smoked.folder / name
-        kept.append((path, path.read_bytes(), path.stat()))
-        path.write_bytes(path.read_bytes() + text.encode())
-
-    yield edit
-    for path, content, stat in reversed(kept):
-        path.write_bytes(content)
-        os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    return {run.name for study in of for run in runs(values, study, setup, best)}
 
 
 FREE = set(STUDIES) - {"size", "pretension"}  # of what the ridge finds
@@ -123,15 +55,14 @@ FREE = set(STUDIES) - {"size", "pretension"}  # of what the ridge finds
     [
         ("figures", (), names(PAPER, "described", FREE)),
         ("published", (), names(PAPER, "published")),
-        ("published_all", CLUSTER, names(PAPER, "published", full=True)),
+        ("published", (*CLUSTER, "--config", "published_all=True"), names(ALL, "published")),
     ],
-    ids=["figures", "published", "published_all"],
+    ids=["figures", "published", "published in full"],
 )
 def test_jobs_of_the_paper(tree, target, arguments, expected):
     planned = tree.planned(target, *arguments)
     assert planned["simulate"] == len(expected)
-    assert (planned["warmup"], planned["claims"], planned[target]) == (1, 1, 1)
-    assert planned["topology_figure"] == 1
+    assert (planned["warmup"], planned["setup_claims"], planned[target]) == (1, 1, 1)
     assert planned.get("ridge_best", 0) == (target == "figures")
 
 
@@ -141,8 +72,15 @@ def test_jobs_of_one_study(tree):
 
 def test_jobs_of_one_figure(tree):
     planned = tree.planned("new/figures/ridge.png", *SMOKE[:-1], "results=new")
-    assert (planned["simulate"], planned["capacity"], planned["study_figure"]) == (4, 4, 1)
-    assert "claims" not in planned and "merge" not in planned
+    assert planned == {
+        "warmup": 1, "simulate": 4, "capacity": 4, "table": 3, "figure": 1
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("study", [*STUDIES, "accuracy"])
+def test_every_study_is_a_target(tree, study):
+    planned = tree.planned(study, *SMOKE[:-1], "results=new")
+    assert planned[study] == 1 and planned["figure"] >= 1
 
 
 def test_a_figure_behind_the_checkpoint_waits_for_it(tree):
@@ -167,18 +105,23 @@ def test_scripts_compute_nothing():
 @pytest.mark.slow
 def test_smoke_writes_everything(smoked):
     out = smoked.folder / "out"
-    made = config.load(smoked.folder / "config/config.yaml", smoked.folder / "config/smoke.yaml")
+    values = config.load(smoked.folder / "config/config.yaml", smoked.folder / "config/smoke.yaml")
     best = read_best(out / "tables" / "described" / "ridge_best.csv")
     ran = {path.name for path in (out / "runs").iterdir()}
-    assert ran == names(made, "described", best=best)
-    table = pd.read_csv(out / "tables" / "topology.csv")
+    assert ran == names(values, "described", best=best)
+    table = pd.read_csv(out / "tables" / "described" / "topology.csv")
     assert list(table["n"]) == [2, 4, 6]
     assert set(table["setup"]) == {"described"} and set(table["status"]) == {"ok"}
+    assert table["c_nl"].between(0, 1).all() and table["c_m"].between(0, 1).all()
     for study in STUDIES:
-        assert len(pd.read_csv(out / "tables" / f"{study}.csv")) > 0, study
-        assert (out / "figures" / f"{study}.png").stat().st_size > 10_000, study
-    assert (out / "figures" / "topology.pdf").exists()
-    assert len(pd.read_csv(out / "tables" / "claims.csv")) > 30
+        for file in studies.load(study).TABLES:
+            assert (out / "tables" / "described" / file).exists(), file
+        for name in studies.load(study).FIGURES:
+            assert np.ptp(mpl.image.imread(out / "figures" / f"{name}.png")) > 0.5, name
+            assert (out / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF"), name
+    claims = pd.read_csv(out / "tables" / "described" / "claims.csv", index_col="id")
+    assert set(claims.loc[["R1", "R2", "S2"], "verdict"]) <= {"holds", "differs", "not computed"}
+    assert claims.loc["G1", "verdict"] == "not applicable"
     assert (out / "benchmarks" / "provenance.json").exists()
     assert all(run in (out / f"logs/simulate/{run}.log").read_text() for run in ran)
     assert not (smoked.folder / "results").exists()
@@ -186,7 +129,7 @@ def test_smoke_writes_everything(smoked):
 
 @pytest.mark.slow
 def test_size_follows_the_best_force_of_the_ridge(smoked):
-    tables = smoked.folder / "out" / "tables"
+    tables = smoked.folder / "out" / "tables" / "described"
     found = best_unbuckled(pd.read_csv(tables / "ridge.csv"))
     assert found["force_N"].nunique() > 1  # so that it can be told from one force throughout
     size = pd.read_csv(tables / "size.csv")
@@ -196,7 +139,7 @@ def test_size_follows_the_best_force_of_the_ridge(smoked):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("target", ["figures", "topology", "claims", "out/figures/size.png"])
+@pytest.mark.parametrize("target", ["figures", "topology", "out/figures/size.png"])
 def test_nothing_to_do_the_second_time(smoked, target):
     assert smoked.planned(target, *SMOKE) == {}
 
@@ -212,27 +155,37 @@ def test_a_touch_reruns_nothing(smoked, edited):
 @pytest.mark.parametrize(
     ("module", "target", "expected"),
     [
-        ("fiberweb/capacity.py", "topology", {"capacity": 3, "topology": 1} | FINISH),
-        ("fiberweb/plotting/topology.py", "topology", {"topology_figure": 1, "topology": 1}),
-        ("fiberweb/plotting/ridge.py", "out/figures/ridge.png", {"study_figure": 1}),
-        ("fiberweb/claims.py", "topology", {}),
+        ("fiberweb/scoring/capacity.py", "topology", {"capacity": 3, "topology": 1} | FINISH),
+        ("fiberweb/scoring/regression.py", "topology", {"capacity": 3, "topology": 1} | FINISH),
+        ("fiberweb/scoring/tables.py", "topology", {"table": 3, "figure": 1, "topology": 1}),
+        ("fiberweb/studies/topology/figure.py", "figures", {"figure": 1, "figures": 1}),
+        ("fiberweb/studies/ridge/figure.py", "out/figures/ridge.png", {"figure": 1}),
+        ("fiberweb/claims/judge.py", "topology", {}),
         ("fiberweb/engines/kirchhoff.py", "topology", jobs(3)),
-        ("fiberweb/studies.py", "figures", {}),
-        ("workflow/scripts/merge.py", "topology", {"merge": 2, "topology": 1}),
+        ("fiberweb/model/buckling.py", "topology", jobs(3)),
+        ("fiberweb/studies/noise/__init__.py", "figures", {}),
+        ("workflow/scripts/figure.py", "topology", {"figure": 1, "topology": 1}),
         ("README.md", "figures", {}),
     ],
 )
 def test_an_edit_reruns_what_depends_on_it(smoked, edited, module, target, expected):
     (smoked.folder / "README.md").touch()
-    edited(module)
+    edited(module, "\nEDITED = True\n")
     assert smoked.planned(target, *SMOKE) == expected
 
 
 @pytest.mark.slow
+def test_a_comment_or_a_docstring_reruns_nothing(smoked, edited):
+    for module in (smoked.folder / "fiberweb").rglob("*.py"):
+        text = module.read_text().replace('"""', '"""Edited. ', 1)
+        edited(module, "\n# edited\n", start=text)
+    assert smoked.planned("figures", *SMOKE) == {}
+
+
+@pytest.mark.slow
 def test_another_rule_for_a_claim_measures_nothing_again(smoked, edited):
-    edited("fiberweb/claims_sweeps.py")
-    planned = smoked.planned("figures", *SMOKE)
-    assert planned["claims"] == 1 and not {"simulate", "capacity"} & set(planned)
+    edited("fiberweb/studies/size/claims.py", "\nEDITED = True\n")
+    assert smoked.planned("figures", *SMOKE) == {"setup_claims": 1, "figures": 1}
 
 
 @pytest.mark.slow
@@ -270,7 +223,7 @@ def test_an_unstable_run_is_a_result(smoked):
     (response,) = blown.glob("runs/*/response.nc")
     attributes = dataset.load(response).attrs
     assert attributes["status"] == "unstable" and attributes["unstable_at"] < 4.0
-    table = pd.read_csv(blown / "tables" / "topology.csv")
+    table = pd.read_csv(blown / "tables" / "described" / "topology.csv")
     assert list(table["status"]) == ["unstable"] and table["c_nl"].isna().all()
     assert (blown / "figures" / "topology.png").exists()
 
@@ -303,7 +256,7 @@ def test_the_same_bytes_again(smoked):
     """On one core what two have made: one study from the start; tables and figures of one behind
     the checkpoint and an animation from the runs there are."""
     first, second = smoked.folder / "out", smoked.folder / "again"
-    simulated_again = set(pd.read_csv(first / "tables" / "topology.csv")["run"])
+    simulated_again = set(pd.read_csv(first / "tables/described/topology.csv")["run"])
     shutil.copytree(first / "runs", second / "runs", ignore=lambda *_: simulated_again)
     shutil.copy2(first / "warmup.done", second)  # else newer than these runs
     targets = ("topology", "again/figures/size.png", "again/figures/buckling.png")
@@ -319,77 +272,18 @@ def test_the_same_bytes_again(smoked):
 
 
 @pytest.mark.slow
-def test_the_second_setup_joins_the_tables_for_good(smoked):
+def test_the_second_setup_leaves_the_first_alone(smoked):
     """Last: it adds to what the tests above look at."""
     (smoked.folder / "small.yaml").write_text(f"results: out\n{SMALL}")
     small = ("--configfile", "small.yaml")
     smoked.snakemake("topology", *small)
+    table = smoked.folder / "out" / "tables" / "described" / "topology.csv"
+    before = table.read_bytes()
     smoked.snakemake("published", *small)
     for target in ("published", "topology"):
         assert smoked.planned(target, *small) == {}, target
-    out = smoked.folder / "out"
-    table = pd.read_csv(out / "tables" / "topology.csv")
-    assert table["setup"].value_counts().to_dict() == {"described": 1, "published": 1}
+    assert table.read_bytes() == before
+    published = table.parents[1] / "published"
+    assert set(pd.read_csv(published / "topology.csv")["setup"]) == {"published"}
     for study in ("topology", "ridge", "size", "pretension", "features"):
-        assert (out / "figures" / f"{study}-published.png").exists()
-    # a setup that is not complete is not begun by the other's target
-    published = next(run for run in table["run"] if "published" in run)
-    (out / "runs" / published / "capacity.nc").unlink()
-    assert smoked.planned("topology", *small) == {"merge": 2, "topology": 1}
-
-
-def listed():
-    """The modules that each rule names under `input: code=`, by its script; for the rule that
-    draws several studies, by the study's module."""
-    texts = [path.read_text() for path in (ROOT / "workflow" / "rules").glob("*.smk")]
-    values = {
-        name: ast.literal_eval(value)
-        for text in texts
-        for name, value in re.findall(
-            r"^([A-Z_]+) = (\(\n.*?^\)|\{\n    \"\w+\": \[.*?^\})", text, re.MULTILINE | re.DOTALL
-        )
-    }
-    found = {}
-    for rule in (part for text in texts for part in re.split(r"(?m)^(?:rule|checkpoint) ", text)):
-        # up to the bracket that closes it, with at most one pair inside
-        if call := re.search(r"code=(lambda \w+: )?code\(((?:[^()]|\([^()]*\))*)\)", rule):
-            script = Path("workflow/scripts") / re.search(r"scripts/(\w+\.py)", rule)[1]
-            for study in values["DRAWN_FROM"] if call[1] else [None]:
-                names = values | {"wildcards": SimpleNamespace(study=study)}
-                patterns = eval(f"[{call[2]}]", {}, names)
-                start = Path(f"fiberweb/plotting/{study}.py") if study else script
-                found[str(start)] = {p for each in patterns for p in (ROOT / "fiberweb").glob(each)}
-    return found
-
-
-def imported(file):
-    """Modules of the package that a file imports, anywhere in it."""
-    names = set()
-    for node in ast.walk(ast.parse(file.read_text())):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("fiberweb"):
-            if node.module == "fiberweb.tables" and [a.name for a in node.names] == [
-                "write"
-            ]:
-                continue  # how a table is written is no reason to measure or simulate again
-            names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "import_module":
-            parts = node.args[0].values
-            names.add("".join(p.value if isinstance(p, ast.Constant) else "*" for p in parts))
-    return {path for name in names for path in ROOT.glob(name.replace(".", "/") + ".py")}
-
-
-@pytest.mark.parametrize("start", listed())
-def test_rules_name_the_modules_they_use(start):
-    """Followed through imports, except into modules that only read and write for this rule."""
-    computing = {"simulate.py": {"dataset.py"}, "topology_tables.py": {"tables.py"}}
-    shut = {"dataset.py", "tables.py"} - computing.get(Path(start).name, set())
-    queue, used = [ROOT / start], set()
-    while queue:
-        file = queue.pop()
-        if file.name not in shut:
-            new = imported(file) - used
-            used |= new
-            queue += new
-    messages_only = {ROOT / "fiberweb" / name for name in ("errors.py", "explain.py")}
-    missing = {str(path.relative_to(ROOT)) for path in used - messages_only - listed()[start]}
-    assert not missing
+        assert (smoked.folder / "out" / "figures" / f"{study}-published.png").exists()

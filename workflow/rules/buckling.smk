@@ -22,7 +22,7 @@ rule animation:
     params:
         seconds=CONFIG.buckling.seconds,
         frame_rate=CONFIG.buckling.frame_rate,
-        caption=caption("buckling", studies.load("buckling").FIGURES["buckling"]),
+        caption=caption("buckling", studies.load("buckling").FIGURES["buckling"], "described"),
     message:
         "Drawing the animations"
     script:

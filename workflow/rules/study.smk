@@ -72,9 +72,10 @@ def figure_spec(wildcards):
     return study, studies.load(study).FIGURES[wildcards.figure]
 
 
-def caption(study, spec):
+def caption(study, spec, setup):
     """What the report says beneath a figure."""
-    return Path(studies.load(study).__file__).with_name(spec.caption).read_text()
+    text = Path(studies.load(study).__file__).with_name(spec.caption).read_text()
+    return text.replace("{{ setup }}", setup)
 
 
 def figure_input(wildcards):
@@ -109,7 +110,7 @@ rule figure:
         options=lambda wildcards: figure_spec(wildcards)[1].options(
             getattr(CONFIG, FIGURES[wildcards.figure])
         ),
-        caption=lambda wildcards: caption(*figure_spec(wildcards)),
+        caption=lambda wildcards: caption(*figure_spec(wildcards), SETUP_OF[wildcards.suffix]),
     message:
         "Drawing {output.png}"
     script:

@@ -21,7 +21,7 @@ ERRORS = {
     "c_nl_error": r"Error of $C_\mathrm{nl}$",
     "c_m_error": r"Error of $C_\mathrm{m}$",
 }
-LEAST = 1e-5  # smaller errors and changes are drawn here
+LEAST = 1e-5  # smaller errors are drawn here
 SWEPT = {
     "spacing_m": ("Spacing (mm)", 1e3),
     "diameter_m": ("Diameter (mm)", 1e3),
@@ -51,8 +51,8 @@ def draw_speed_accuracy(given: dict, setup: str, path: str | Path) -> Figure:
     table = table[(table["setup"] == setup) & table["engine"].isin(MARKERS)]
     networks = list(dict.fromkeys(table["network"]))
     with style.applied():
-        made = style.figure(style.DOUBLE, 8.0 + 55.0 * len(networks))
-        axes = made.subplots(len(networks), 3, squeeze=False, sharex=True)
+        figure = style.figure(style.DOUBLE, 8.0 + 55.0 * len(networks))
+        axes = figure.subplots(len(networks), 3, squeeze=False, sharex=True)
         for row, (network, letter) in enumerate(zip(networks, "abcdef")):
             rows = table[table["network"] == network]
             for ax, (column, label) in zip(axes[row], ERRORS.items(), strict=True):
@@ -65,9 +65,9 @@ def draw_speed_accuracy(given: dict, setup: str, path: str | Path) -> Figure:
             )
         for ax in axes[-1]:
             ax.set_xlabel("CPU time of a 100 s run (s)")
-        made.legend(*_engine_key(axes[0, 0]), loc="outside upper center", ncols=5)
-        style.save(made, path)
-    return made
+        figure.legend(*_engine_key(axes[0, 0]), loc="outside upper center", ncols=5)
+        style.save(figure, path)
+    return figure
 
 
 def _points(ax: Axes, rows: pd.DataFrame, column: str) -> None:
@@ -115,16 +115,16 @@ def draw_model_ladder(given: dict, setup: str, path: str | Path) -> Figure:
     `accuracy.LADDER_COLUMNS` and `limits.PLANE_COLUMNS`."""
     ladder, plane = given["model_ladder"], given["out_of_plane"]
     with style.applied():
-        made = style.figure(style.DOUBLE, 120.0)
-        top, bottom = made.subfigures(2, 1, height_ratios=[62, 58])
+        figure = style.figure(style.DOUBLE, 120.0)
+        top, bottom = figure.subfigures(2, 1, height_ratios=[62, 58])
         style.letter(
             top, "a", f"Each change against the rung above it (4×4, 100 mm, {plots.BUCKLING} = 0.8)"
         )
         style.letter(bottom, "b", "Out of the plane: a push that stays, towards the clamped ends")
         _changes(top.subplots(1, 2, sharey=True, width_ratios=[2, 1]), ladder)
         _growth(bottom.subplots(1, 2), plane)
-        style.save(made, path)
-    return made
+        style.save(figure, path)
+    return figure
 
 
 def _changes(axes, ladder: pd.DataFrame) -> None:
@@ -179,8 +179,8 @@ def draw_stability(given: dict, setup: str, path: str | Path) -> Figure:
     the drift of energy in words; columns of `limits.COLUMNS` and `limits.DRIFT_COLUMNS`."""
     table, drift = given["stability"], given["energy_drift"]
     with style.applied():
-        made = style.figure(style.DOUBLE, 130.0)
-        axes = made.subplots(3, 3)
+        figure = style.figure(style.DOUBLE, 130.0)
+        axes = figure.subplots(3, 3)
         _agreement(axes[0, 0], table)
         for ax, (column, (label, unit)) in zip(axes.flat[1:], SWEPT.items()):
             _sweep(ax, table, column, label, unit)
@@ -196,9 +196,9 @@ def draw_stability(given: dict, setup: str, path: str | Path) -> Figure:
         handles += axes[0, 0].plot([], [], color=style.INK)
         handles += axes[0, 0].plot([], [], **style.UNSTABLE)
         names = ["kirchhoff", "cosserat", "PyElastica", "predicted", "automatic step unstable"]
-        made.legend(handles, names, loc="outside upper center", ncols=5)
-        style.save(made, path)
-    return made
+        figure.legend(handles, names, loc="outside upper center", ncols=5)
+        style.save(figure, path)
+    return figure
 
 
 def _agreement(ax: Axes, table: pd.DataFrame) -> None:
@@ -217,7 +217,7 @@ def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) 
     """The points that differ from the middle of the box in this column alone, and in what
     follows it: the force of a buckling number."""
     # under the force that is swept; elsewhere under a gentle one, which the prediction is for
-    found = "found_loaded_s" if column == "force_N" else "found_s"
+    measured = "found_loaded_s" if column == "force_N" else "found_s"
     for engine in ("cosserat", "kirchhoff"):
         rows = table[table["engine"] == engine]
         same = {name: rows[name] == value for name, value in MIDDLE.items() if name != column}
@@ -227,11 +227,11 @@ def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) 
         rows = rows[alike].sort_values([column, "predicted_s"])
         x = rows[column] * unit
         ax.plot(x, 1e6 * rows["predicted_s"], color=COLOUR[engine], lw=0.8)
-        ax.plot(x, 1e6 * rows[found], MARKERS[engine], color=COLOUR[engine], mfc="none", mew=0.8)
+        ax.plot(x, 1e6 * rows[measured], MARKERS[engine], color=COLOUR[engine], mfc="none", mew=0.8)
         bad = rows["automatic_step_status"] != "ok"
         ax.plot(x[bad], 1e6 * rows.loc[bad, "predicted_s"], **style.UNSTABLE)
     ax.set(yscale="log", xscale="log", xlabel=label, ylabel="Limit (µs)")
-    ax.set_ylim(0.5e6 * table[["predicted_s", found]].min().min(), 2e6 * table["found_s"].max())
+    ax.set_ylim(0.5e6 * table[["predicted_s", measured]].min().min(), 2e6 * table["found_s"].max())
     if column == "tension_N":
         ax.set_xscale("symlog", linthresh=0.1)
         ax.set_xlim(left=-0.02)

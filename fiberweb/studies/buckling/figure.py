@@ -37,17 +37,12 @@ THINNED = 5  # samples to a point where whole runs are shown
 
 
 def draw(given: dict, setup: str, path: str | Path, seconds: float) -> Figure:
-    """Snapshots of each run about the widest bulge of a column in any of them, how driven point
-    and column move about it, and the bulge against the momentary load.
+    """Snapshots of each run around the widest bulge of a column in any of them, how driven point
+    and column move then, and the bulge against the momentary load; see `fiberweb.figures`.
 
     Args:
         given: "responses", with `centre_line`, of one crosshatch and one input, by rising force.
-        setup: of them all.
-        path: of the figure; PNG and PDF are written beside each other.
         seconds: length of the time series.
-
-    Returns:
-        The figure.
     """
     responses = given["responses"]
     bulged = [bulges(data) for data in responses]
@@ -56,19 +51,19 @@ def draw(given: dict, setup: str, path: str | Path, seconds: float) -> Figure:
     films = [film_of(data, instants) for data in responses]
     heights = [45.0] * len(films) + [56.0]
     with style.applied():
-        made = style.figure(style.DOUBLE, sum(heights))
-        rows = list(made.subfigures(len(heights), 1, height_ratios=heights))
+        figure = style.figure(style.DOUBLE, sum(heights))
+        rows = list(figure.subfigures(len(heights), 1, height_ratios=heights))
         letters = iter("abcdefghijklmnopqrstuvwxyz")
         for row, film in zip(rows, films):
             style.letter(row, next(letters), film.title)
             _row(row, film, limits_of(films), norm_of(films))
         left, right = rows[-1].subfigures(1, 2, width_ratios=[3, 2])
-        style.letter(left, next(letters), "About the widest bulge (dots: the snapshots)")
+        style.letter(left, next(letters), "Around the widest bulge (dots: the snapshots)")
         _motion(left, responses, bulged, _span(responses[0], middle, seconds), instants)
         style.letter(right, next(letters), "Columns against their momentary load")
         _onset(right, responses, bulged)
-        style.save(made, path)
-    return made
+        style.save(figure, path)
+    return figure
 
 
 def animate(
@@ -77,7 +72,7 @@ def animate(
     frame_rate: float,
     paths: Sequence[str | Path],
 ) -> None:
-    """One GIF a run, in real time, all over the same seconds about the widest bulge.
+    """One GIF a run, in real time, all over the same seconds around the widest bulge.
 
     Args:
         responses: as "responses" for `draw`.
@@ -96,7 +91,7 @@ def animate(
 
 
 def _snapshots(data: xr.Dataset, middle: int) -> np.ndarray:
-    """Samples of the snapshots; about another middle where the run is not long enough."""
+    """Samples of the snapshots; around another middle where the run is not long enough."""
     scene, last = scene_of(data), data.sizes["time"] - 1
     half = round(0.5 * scene.sample_rate / scene.drive_rate)
     reach = half * SNAPSHOTS.max()
@@ -105,7 +100,7 @@ def _snapshots(data: xr.Dataset, middle: int) -> np.ndarray:
 
 
 def _span(data: xr.Dataset, middle: int, seconds: float) -> slice:
-    """Samples of so many seconds about the middle, within the run."""
+    """Samples of so many seconds around the middle, within the run."""
     samples = data.sizes["time"]
     count = min(max(1, round(seconds * float(data.attrs["sample_rate"]))), samples)
     start = int(np.clip(middle - count // 2, 0, samples - count))
@@ -169,12 +164,12 @@ def _onset(part: FigureBase, responses: Sequence[xr.Dataset], bulged: Sequence[n
 def _gif(film: Film, limits: np.ndarray, norm: Normalize, duration: int, path: str | Path) -> None:
     """Write a film as a GIF, so many milliseconds a frame."""
     with style.applied():
-        made = style.figure(style.SINGLE, 94.0)
-        made.set_dpi(GIF_DPI)
-        made.suptitle(film.title)
-        upper, lower = made.subplots(2, 1, height_ratios=[5, 1])
+        figure = style.figure(style.SINGLE, 94.0)
+        figure.set_dpi(GIF_DPI)
+        figure.suptitle(film.title)
+        upper, lower = figure.subplots(2, 1, height_ratios=[5, 1])
         network = Frame(upper, film, limits, norm)
-        colour_bar(made, upper, norm)
+        colour_bar(figure, upper, norm)
         lower.plot(film.time, film.u, color=style.GREY)
         lower.set(xlabel="Time (s)", ylabel="Input $u$", xlim=film.time[[0, -1]])
         (now,) = lower.plot([], [], "o", color=style.DRIVE, ms=3.5, clip_on=False)
@@ -182,17 +177,17 @@ def _gif(film: Film, limits: np.ndarray, norm: Normalize, duration: int, path: s
         moving = (network.fibres, network.driven, now, clock)
         for artist in moving:
             artist.set_animated(True)
-        made.canvas.draw()
-        still = made.canvas.copy_from_bbox(made.bbox)
+        figure.canvas.draw()
+        still = figure.canvas.copy_from_bbox(figure.bbox)
         pictures = []
         for frame in range(len(film.time)):
-            made.canvas.restore_region(still)
+            figure.canvas.restore_region(still)
             network.show(frame)
             now.set_data([film.time[frame]], [film.u[frame]])
             clock.set_text(film.caption(frame))
             for artist in moving:
-                made.draw_artist(artist)
-            seen = Image.fromarray(np.asarray(made.canvas.buffer_rgba())[..., :3])
+                figure.draw_artist(artist)
+            seen = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[..., :3])
             pictures.append(seen.quantize(palette=_palette(), dither=Image.Dither.NONE))
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     pictures[0].save(
@@ -207,6 +202,6 @@ def _palette() -> Image.Image:
     colours = np.array([to_rgb(colour) for colour in plain])
     white = np.linspace(0.0, 1.0, GIF_SHADES)[:, None, None]
     shades = 255 * (white + (1 - white) * colours)
-    made = Image.new("P", (1, 1))
-    made.putpalette(np.round(shades).astype(int).ravel().tolist())
-    return made
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(np.round(shades).astype(int).ravel().tolist())
+    return palette

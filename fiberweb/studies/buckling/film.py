@@ -19,7 +19,7 @@ from fiberweb.model.scene import Scene
 
 POINTS = 12  # drawn on each section
 CURVATURE = ListedColormap(style.colours(256))  # dark enough to show on white as a line
-MARGIN = 16.0  # mm, about the network, and length of the bar that marks a held end
+MARGIN = 16.0  # mm, around the network, and length of the bar that marks a held end
 MM = 1e3  # of a metre
 
 

@@ -18,10 +18,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
-from fiberweb.figures import plots, style
+from fiberweb.figures import panels, plots, style
+from fiberweb.studies.calibration.tables import GRID, SIZE
 
-GRID = K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
-SIZE = 8  # N of the crosshatch that has a misfit
+K, NU, GAMMA = GRID
 SHOWN = 6  # best points in panel b
 SYMBOLS = {
     "c_p4": "$c\\,[P_4]$",
@@ -38,24 +38,17 @@ TOLERANCE = {"color": style.FAINT, "alpha": 0.4, "lw": 0}
 PAPER = {"color": style.GREY, "lw": 0.8}
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw the calibration and write it as PNG and PDF.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw the calibration, as `fiberweb.figures` says.
 
     Args:
-        tables: "calibration" and "calibration_check", from `fiberweb.studies.calibration.tables`; and, to show
-            what readouts of the input alone score, "ridge_baselines", whose runs have the same input.
-        setup: rows of other setups are left out.
-        path: of the figure.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "calibration" (`tables.table`) and "calibration_check" (`tables.check`); and, to show
+            what readouts of the input alone score, "ridge_baselines" (`input_baselines`), whose
+            runs have the same input.
     """
-    runs = plots.rows_of(tables["calibration"], "calibration", setup)
-    roles = tables["calibration_check"].set_index("role")
-    baselines = tables.get("ridge_baselines")
+    runs = plots.rows_of(given["calibration"], "calibration", setup)
+    roles = given["calibration_check"].set_index("role")
+    baselines = given.get("ridge_baselines")
     dense = runs[runs["n"] == SIZE]
     with style.applied():
         figure = style.figure(style.DOUBLE, 116.0)
@@ -104,11 +97,7 @@ def _maps(part: SubFigure, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
     }
     if (dense["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    legend = part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="upper right",
-        bbox_to_anchor=(0.995, 1.0), handlelength=1.0, columnspacing=1.2,
-    )  # fmt: skip
-    legend.set_in_layout(False)  # it shares the line of the title, which reserves the room
+    panels.key_beside_title(part, handles)
 
 
 def _cells(ax: Axes, grid: np.ndarray, norm: LogNorm) -> None:

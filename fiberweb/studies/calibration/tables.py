@@ -2,8 +2,10 @@
 
 The paper does not report these three. Of the described setup they are the point of a grid whose
 8x8 crosshatch comes nearest to the four capacities that Fig. 1d prints (claims T1 to T4), which
-therefore count nowhere. `check` holds the setup's defaults against a grid that was computed;
-`python -m fiberweb.studies.calibration.tables results/tables/described/calibration.csv` prints the verdict.
+therefore count nowhere. `check` holds the setup's defaults against a grid that was computed, and
+this prints the verdict:
+
+    python -m fiberweb.studies.calibration.tables results/tables/described/calibration.csv
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from fiberweb.claims import judge as claims
+from fiberweb.claims import judge
 from fiberweb.model.scene import SETUPS
 from fiberweb.scoring import tables
 from fiberweb.tables import read
@@ -46,7 +48,7 @@ NONE_STABLE = "the calibration table has no stable run of the 8x8 crosshatch to 
 @cache
 def paper() -> dict[str, tuple[float, float]]:
     """The paper's capacity and our tolerance, dimensionless, of each column of `TARGETS`."""
-    listed = {claim["id"]: claim for claim in claims.load()}
+    listed = {claim["id"]: claim for claim in judge.load()}
     return {
         column: (listed[name]["paper"], listed[name]["tolerance"])
         for column, (name, _, _) in TARGETS.items()
@@ -105,8 +107,8 @@ def check(frame: pd.DataFrame) -> pd.DataFrame:
         raise ValueError(f"a calibration table has the column {missing[0]!r}, and this one has not")
     default = {column: DEFAULTS[field] for column, field in GRID.items()}
     at = (frame[list(GRID)] == pd.Series(default)).all(axis=1) & (frame["n"] == SIZE)
-    found = frame[at].iloc[:1].to_dict("records") or [default]
-    records = [{"role": "default", "setup": "described"} | found[0]]
+    (own,) = frame[at].iloc[:1].to_dict("records") or [default]
+    records = [{"role": "default", "setup": "described"} | own]
     if frame["misfit"].notna().any():
         records.append(best(frame).to_dict() | {"role": "best"})
     values, tolerances = zip(*paper().values(), strict=True)
@@ -126,15 +128,15 @@ def verdict(frame: pd.DataFrame) -> tuple[bool, str]:
     roles = frame.set_index("role")
     if "best" not in roles.index:
         return False, NONE_STABLE
-    chosen, found = roles.loc["default"], roles.loc["best"]
-    if math.isnan(chosen["misfit"]):
-        return False, f"the defaults, {_point(chosen)}, have no stable 8x8 run in this grid"
-    ours, least = (f"{row['misfit']:.{DIGITS}f}" for row in (chosen, found))
-    if ours == least:
-        return True, f"the defaults, {_point(chosen)}, are the grid's best: misfit {least}"
+    default, least = roles.loc["default"], roles.loc["best"]
+    if math.isnan(default["misfit"]):
+        return False, f"the defaults, {_point(default)}, have no stable 8x8 run in this grid"
+    misfits = [f"{row['misfit']:.{DIGITS}f}" for row in (default, least)]
+    if misfits[0] == misfits[1]:
+        return True, f"the defaults, {_point(default)}, are the grid's best: misfit {misfits[1]}"
     return False, (
-        f"the defaults, {_point(chosen)}, have a misfit of {ours}, but the grid's best, "
-        f"{_point(found)}, has {least}"
+        f"the defaults, {_point(default)}, have a misfit of {misfits[0]}, but the grid's best, "
+        f"{_point(least)}, has {misfits[1]}"
     )
 
 

@@ -1,4 +1,4 @@
-"""Twin runs about buckling: how they part, and what that does to capacities.
+"""Perturbed pairs around buckling: how they part, and what that does to capacities.
 
 Drawing only: every number comes from the tables.
 """
@@ -14,10 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fiberweb.figures import panels, plots, style
+from fiberweb.studies.chaos.tables import ROUND_OFF
 
 SHOWN = 6  # pairs whose separation is drawn
-# of the network's length, as in fiberweb.studies.chaos.tables, from which a figure need not be drawn again
-ROUND_OFF = 100 * np.finfo(float).eps
 CONSISTENCY = {"marker": "o", "ms": 3, "lw": 0.8, "color": style.colours(2)[0]}
 SATURATION = {"marker": "s", "ms": 3, "lw": 0.8, "color": style.colours(2)[1]}
 BUCKLING = {"color": style.FAINT, "lw": 0.8}
@@ -25,32 +24,25 @@ BUCKLING = {"color": style.FAINT, "lw": 0.8}
 POINTS = {"color": style.INK, "marker": "o", "ms": 2.4, "lw": 0.8, "elinewidth": 0.7, "capsize": 2}
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw separation over time, and rate, consistency and capacities over B, for one setup.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw separation over time, and rate, consistency and capacities over B, as
+    `fiberweb.figures` says.
 
     Args:
-        tables: "chaos_rates" (`chaos.rates`), "chaos_separations" (`chaos.separations`) and
-            "chaos_baselines" (`tables.input_baselines`).
-        setup: "described" or "published".
-        path: of the figure; PNG and PDF are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table of rates has no run of this setup.
+        given: "chaos_rates" (`tables.rates`), "chaos_separations" (`tables.separations`) and
+            "chaos_baselines" (`input_baselines`).
     """
-    rows = plots.rows_of(tables["chaos_rates"], "chaos_rates", setup).sort_values("buckling_number")
-    apart = tables["chaos_separations"]
+    rows = plots.rows_of(given["chaos_rates"], "chaos_rates", setup).sort_values("buckling_number")
+    apart = given["chaos_separations"]
     apart = apart[apart["setup"] == setup]
     bad = (rows[["status", "twin_status"]] == "unstable").any(axis=1)
     with style.applied():
         figure = style.figure(style.DOUBLE, 122.0)
         top, bottom = figure.subfigures(2, 1, height_ratios=[56, 66])
-        style.letter(top, "a", f"Separation of twin runs, rms over readouts ({setup} setup)")
+        style.letter(top, "a", f"Separation of perturbed pairs, rms over readouts ({setup} setup)")
         _separations(top.subplots(), apart, rows)
         axes = bottom.subplots(1, 4)
-        titles = ("Growth rate", "Twins, last half", *panels.CAPACITIES.values())
+        titles = ("Growth rate", "Pairs, last half", *panels.CAPACITIES.values())
         for ax, letter, title in zip(axes, "bcde", titles, strict=True):
             panels.letter(ax, letter, title)
             _over_buckling(ax, rows)
@@ -59,7 +51,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         for ax, (name, symbol) in zip(axes[2:], plots.TOTALS.items(), strict=True):
             _points(ax, rows, name, f"{name}_se")
             ax.set(ylim=(-0.03, 1.03), ylabel=symbol)
-            plots.baselines(ax, tables["chaos_baselines"], name)
+            plots.baselines(ax, given["chaos_baselines"], name)
         for ax in axes:
             style.mark_unstable(ax, list(rows.loc[bad, "buckling_number"]))
         panels.key(bottom, _handles(bad.any()), ncols=2, columnspacing=3.0)
@@ -93,7 +85,7 @@ def _round_off(ax: Axes, level: float) -> None:
     foot = min(ax.get_ylim()[0], level / 100)  # room for the name, wherever the curves end
     ax.axhspan(foot, level, color=style.FAINT, alpha=0.45, lw=0, zorder=0)
     ax.annotate(
-        "round-off:\nequal twins", (1.01, level), va="top", xycoords=("axes fraction", "data")
+        "round-off:\nequal runs", (1.01, level), va="top", xycoords=("axes fraction", "data")
     )
     ax.set_ylim(foot, max(ax.get_ylim()[1], 1e8 * level))
 
@@ -128,7 +120,7 @@ def _consistency(ax: Axes, rows: pd.DataFrame) -> None:
 def _handles(unstable: bool) -> dict[str, Line2D]:
     """The key of the panels over B."""
     handles = {
-        "consistency: correlation of the twins": Line2D([], [], **CONSISTENCY),
+        "consistency: correlation of a pair": Line2D([], [], **CONSISTENCY),
         "saturation: separation / that of unrelated motions": Line2D([], [], **SATURATION),
         f"buckling at {plots.BUCKLING} = 1": Line2D([], [], **BUCKLING),
     }

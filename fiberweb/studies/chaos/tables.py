@@ -1,7 +1,7 @@
-"""Twin runs that differ by a hair at the start: do they part, or forget that they differed?
+"""Perturbed pairs, runs that hardly differ at the start: do they part, or forget the difference?
 
 Two measures of one pair. The rate at which a small separation grows is the largest Lyapunov
-exponent of the driven network. Consistency is the correlation of the twins' responses once the
+exponent of the driven network. Consistency is the correlation of the two responses once the
 start is over (Uchida, McAllister and Roy, Consistency of nonlinear system response to complex
 drive signals, Phys. Rev. Lett. 93, 244102 (2004)): 1 where the response is a function of the
 input, which every capacity presumes, and below 1 where it depends on the start as well.
@@ -24,8 +24,11 @@ from fiberweb.scoring import capacity
 from fiberweb.simulation import dataset
 
 STEP = 0.5  # s: longer than the input is correlated, so that steps count as independent
-SMALL = 0.01  # of the rms displacement: a separation below it grows as a linear one does
-ROUND_OFF = 100 * np.finfo(float).eps  # of the network's length; twins at rest stay 20 times closer
+# of the rms displacement: a separation below it grows as a linear one does; our own choice
+SMALL = 0.01
+# of the network's length; our own choice, above what remains between the runs of a pair that
+# forgets
+ROUND_OFF = 100 * np.finfo(float).eps
 DRAWN_EVERY = 0.1  # s, of the separations that are kept
 COLUMNS = (
     "twin", "twin_status", "separation_m", "rate_per_s", "rate_se", "rate_steps", "consistency",
@@ -43,15 +46,15 @@ class Rate(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Twins: responses of scenes that differ in their disturbance alone."""
+    """A perturbed pair: responses of scenes that differ in their disturbance alone."""
 
     first: xr.Dataset
     second: xr.Dataset
 
 
 def separation(pair: Pair) -> np.ndarray:
-    """Distance between the twins' readouts, rms over the readouts, shape (time,), m; NaN once
-    either is unstable."""
+    """Distance between the two runs, rms over the readouts, shape (time,), m; NaN once either is
+    unstable."""
     apart = pair.second["displacement"] - pair.first["displacement"]
     return np.sqrt((apart**2).sum("axis", skipna=False).mean("readout", skipna=False)).values
 
@@ -63,12 +66,12 @@ def rms_displacement(response: xr.Dataset) -> float:
 
 
 def growth_rate(separation: np.ndarray, sample_rate: float, least: float, most: float) -> Rate:
-    """Largest Lyapunov exponent from the separation d(t) of twins.
+    """Largest Lyapunov exponent from the separation d(t) of a perturbed pair.
 
     The mean of ln(d(t + STEP) / d(t)) / STEP over all steps that begin with least <= d <= most:
     while d is small it follows linear equations, so its growth does not depend on its size, and
     every visit to that range counts. Steps are chosen by their beginning alone, which does not
-    favour growth or decay. Twins that have become equal to round-off tell nothing until something
+    favour growth or decay. Runs that have become equal to round-off tell nothing until something
     parts them; where that is most of the time the mean is an upper bound.
 
     Args:
@@ -91,7 +94,7 @@ def growth_rate(separation: np.ndarray, sample_rate: float, least: float, most: 
 
 
 def consistency(pair: Pair) -> float:
-    """Correlation of the twins over the last half of the run, mean over signals; dimensionless."""
+    """Correlation of the two runs over their last half, mean over signals; dimensionless."""
     first, second = _last_half(pair)
     together = (first * second).sum(axis=0)
     return float(np.mean(together / np.sqrt((first**2).sum(axis=0) * (second**2).sum(axis=0))))
@@ -99,25 +102,25 @@ def consistency(pair: Pair) -> float:
 
 def saturation(pair: Pair) -> float:
     """Separation over the last half against that of unrelated motions of the same size: 0 for
-    equal twins, 1 for twins without anything in common."""
+    equal runs, 1 for runs without anything in common."""
     first, second = _last_half(pair)
     return float(np.sqrt(((first - second) ** 2).sum() / (first**2 + second**2).sum()))
 
 
 def rates(table: pd.DataFrame, response_paths: Sequence[str | Path]) -> pd.DataFrame:
-    """One row for each pair of twins.
+    """One row for each perturbed pair.
 
     Args:
-        table: of the study, from `tables.study`; the first twin's row is kept.
-        response_paths: twins next to one another, the less disturbed one first.
+        table: of the study, from `tables.study`; of a pair the first run's row is kept.
+        response_paths: runs of a pair next to one another, the less disturbed one first.
 
     Returns:
-        The table's rows of the first twins and `COLUMNS`: run and status of the second twin; how
+        The table's rows of the first runs and `COLUMNS`: name and status of the second run; how
         far apart the driven points began (m); rate (1/s), its standard error and number of steps;
-        consistency and saturation, all three NaN where either twin was unstable.
+        consistency and saturation, all three NaN where either run was unstable.
 
     Raises:
-        ValueError: paths that are not pairs of twins.
+        ValueError: paths that are not of perturbed pairs.
     """
     records = [_measured(pair) for pair in pairs(response_paths)]
     measured = pd.DataFrame(records, columns=["run", *COLUMNS])
@@ -126,7 +129,7 @@ def rates(table: pd.DataFrame, response_paths: Sequence[str | Path]) -> pd.DataF
 
 def separations(response_paths: Sequence[str | Path]) -> pd.DataFrame:
     """Separation over time of each pair, every `DRAWN_EVERY` s: `SEPARATION_COLUMNS`; rms_m is
-    the rms displacement of the first twin. Arguments and errors as in `rates`."""
+    the rms displacement of the first run. Arguments and errors as in `rates`."""
     frames = []
     for pair in pairs(response_paths):
         scene = Scene.from_json(pair.first.attrs["scene"])
@@ -144,39 +147,39 @@ def pairs(response_paths: Sequence[str | Path]) -> Iterator[Pair]:
     """Each two neighbours of a list of responses; see `rates`."""
     for first, second in _by_two(response_paths):
         pair = Pair(dataset.load(first), dataset.load(second))
-        scenes = [Scene.from_json(twin.attrs["scene"]) for twin in pair]
+        scenes = [Scene.from_json(run.attrs["scene"]) for run in pair]
         alike = len({replace(scene, disturbance=0.0).to_json() for scene in scenes}) == 1
         if not (alike and 0.0 < scenes[0].disturbance < scenes[1].disturbance):
             raise ValueError(
-                f"{first} and {second} are no twins; give runs of scenes that differ in nothing "
-                "but a disturbance above 0, the less disturbed one first"
+                f"{first} and {second} are no perturbed pair; give runs of scenes that differ in "
+                "nothing but a disturbance above 0, the less disturbed one first"
             )
         yield pair
 
 
 def _by_two(paths: Sequence[str | Path]) -> Iterable[tuple[str | Path, str | Path]]:
     if len(paths) % 2:
-        raise ValueError(f"{len(paths)} responses are no pairs of twins; give an even number")
+        raise ValueError(f"{len(paths)} responses are no perturbed pairs; give an even number")
     return zip(paths[::2], paths[1::2])
 
 
 def _measured(pair: Pair) -> tuple:
     """Values of ``run`` and of `COLUMNS`."""
-    scenes = [Scene.from_json(twin.attrs["scene"]) for twin in pair]
-    about = (
+    scenes = [Scene.from_json(run.attrs["scene"]) for run in pair]
+    start = (
         pair.first.attrs["run"], pair.second.attrs["run"], pair.second.attrs["status"],
         scenes[1].disturbance - scenes[0].disturbance,
     )  # fmt: skip
-    if any(twin.attrs["status"] == "unstable" for twin in pair):
-        return (*about, math.nan, math.nan, 0, math.nan, math.nan)
+    if any(run.attrs["status"] == "unstable" for run in pair):
+        return (*start, math.nan, math.nan, 0, math.nan, math.nan)
     least = ROUND_OFF * scenes[0].network.length
     most = SMALL * rms_displacement(pair.first)
     rate = growth_rate(separation(pair), scenes[0].sample_rate, least, most)
-    return (*about, *rate, consistency(pair), saturation(pair))
+    return (*start, *rate, consistency(pair), saturation(pair))
 
 
 def _last_half(pair: Pair) -> list[np.ndarray]:
-    """Signals (time, p) of the last half of both twins, each without its mean over that time."""
-    signals = [capacity.signals(twin)[1] for twin in pair]
+    """Signals (time, p) of the last half of both runs, each without its mean over that time."""
+    signals = [capacity.signals(run)[1] for run in pair]
     halves = [values[len(values) // 2 :] for values in signals]
     return [values - values.mean(axis=0) for values in halves]

@@ -49,25 +49,16 @@ GROUP = {"color": style.GREY, "mfc": "white", "mew": 0.8, "ms": 3.4, "ls": ""}
 RANK_LINE = {"color": style.INK, "lw": 0.8, "ls": (0, (1, 1.5))}
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw Fig. 4 for one setup and write it as PNG and PDF.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw Fig. 4, as `fiberweb.figures` says.
 
     Args:
-        tables: "features" and "features_greedy" from `fiberweb.studies.features.tables`, of which rows of other
-            setups are left out, and "features_baselines" from `fiberweb.scoring.tables.input_baselines`. An unstable
-            run is drawn as an X.
-        setup: "described" or "published".
-        path: of the figure; both suffixes are written beside each other.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "features" (`tables.group_table`), "features_greedy" (`tables.greedy_table`) and
+            "features_baselines" (`input_baselines`).
     """
     table, greedy = (
-        frame[frame["setup"] == setup]
-        for frame in (tables["features"], tables["features_greedy"])
-    )  # fmt: skip
-    if table.empty:
-        raise ValueError(f"the features table has no run of the {setup} setup to draw")
+        plots.rows_of(given[name], name, setup) for name in ("features", "features_greedy")
+    )
     network = crosshatch(int(table["n"].iloc[0]), length=1.0)
     with style.applied():
         figure = style.figure(style.DOUBLE, 218.0)
@@ -75,7 +66,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
         size = f"{network.n}×{network.n}"
         style.letter(top, "a", f"Groups of readouts, {size} crosshatch ({setup} setup)")
         _schematics(top, network)
-        _scores(middle, table, tables["features_baselines"])
+        _scores(middle, table, given["features_baselines"])
         curves, places = bottom.subfigures(1, 2, width_ratios=[1.3, 1])
         force = f"{greedy['force_N'].iloc[0]:g} N"
         style.letter(curves, "e", f"Signals at {force}, chosen one by one on the training part")

@@ -50,8 +50,8 @@ def group_table(
         run["verdict"] = math.isclose(run["force_N"], verdict_force, rel_tol=1e-6)
         response = dataset.load(response_path)
         records += [run | row for row in _groups(response, alpha)]
-    made = pd.DataFrame(records)
-    return made[[*(name for name in made.columns if name not in GROUP_COLUMNS), *GROUP_COLUMNS]]
+    table = pd.DataFrame(records)
+    return table[[*(name for name in table.columns if name not in GROUP_COLUMNS), *GROUP_COLUMNS]]
 
 
 def greedy_table(response_path: str | Path, alpha: float, share: float) -> pd.DataFrame:
@@ -73,10 +73,10 @@ def greedy_table(response_path: str | Path, alpha: float, share: float) -> pd.Da
     scene = _scene_columns(response) | {"share": share}
     records = []
     for target in selection.TARGETS:
-        found = [{}]
+        rows = [{}]
         if response.attrs["status"] == "ok":
-            found = _chosen(response, target, alpha, share)
-        records += [scene | {"target": target} | row for row in found]
+            rows = _chosen(response, target, alpha, share)
+        records += [scene | {"target": target} | row for row in rows]
     return pd.DataFrame(records, columns=list(GREEDY_COLUMNS))
 
 
@@ -110,17 +110,17 @@ def _chosen(response, target: str, alpha: float, share: float) -> list[dict]:
     """The rows of one target."""
     u, moved = capacity.signals(response)
     rate = float(response.attrs["sample_rate"])
-    found = selection.forward(u, moved, rate, target, alpha)
-    c = getattr(found, target)
-    readout, axis = of_signals(found.signal, response.sizes["readout"])
-    made = pd.DataFrame({name: getattr(found, name) for name in TOTALS})
+    order = selection.forward(u, moved, rate, target, alpha)
+    c = getattr(order, target)
+    readout, axis = of_signals(order.signal, response.sizes["readout"])
+    rows = pd.DataFrame({name: getattr(order, name) for name in TOTALS})
     for name in ("kind", "fibre", "section"):
-        made[name] = response[name].values[readout]
-    made["axis"] = axis
-    made["n_chosen"] = range(1, len(made) + 1)
-    made["kept"] = c / c[-1]
-    made["needed"] = selection.needed(c, share)
-    return made.to_dict("records")
+        rows[name] = response[name].values[readout]
+    rows["axis"] = axis
+    rows["n_chosen"] = range(1, len(rows) + 1)
+    rows["kept"] = c / c[-1]
+    rows["needed"] = selection.needed(c, share)
+    return rows.to_dict("records")
 
 
 def _scene_columns(response) -> dict:

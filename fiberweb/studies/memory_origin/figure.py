@@ -42,23 +42,16 @@ COLUMNS = {  # of panel b: title and label of x
 }
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw the study for one setup and write it as PNG and PDF.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw the study, as `fiberweb.figures` says: panels a and b of the described setup, of the
+    published one the authors' networks with and without the filter.
 
     Args:
-        tables: "memory_origin", from `fiberweb.scoring.tables.study`, and "memory_origin_baselines".
-        setup: "described": panels a and b; "published": the authors' networks with and without
-            the filter.
-        path: of the figure.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "memory_origin" (`fiberweb.scoring.tables.study`) and "memory_origin_baselines"
+            (`input_baselines`).
     """
-    rows = plots.rows_of(tables["memory_origin"], "memory_origin", setup)
-    baseline = tables["memory_origin_baselines"]
+    rows = plots.rows_of(given["memory_origin"], "memory_origin", setup)
+    baseline = given["memory_origin_baselines"]
     with style.applied():
         if setup == "published":
             figure = style.figure(style.DOUBLE, 66.0)
@@ -78,14 +71,14 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
 
 def _families(rows: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """The runs with springs, those with pinned crossings, and those over the authors' crossings,
-    which are about the filter."""
+    which are for the filter."""
     pinned = np.isinf(rows[K])
     same = ["engine", K, NU]  # as a run with the filter has them
-    about_filter = (rows[same] == rows.loc[rows[FILTER] > 0, same].iloc[0]).all(axis=1)
+    of_filter = (rows[same] == rows.loc[rows[FILTER] > 0, same].iloc[0]).all(axis=1)
     return {
-        "springs": rows[~pinned & ~about_filter],
+        "springs": rows[~pinned & ~of_filter],
         "pinned": rows[pinned],
-        "filter": rows[about_filter],
+        "filter": rows[of_filter],
     }
 
 
@@ -187,7 +180,7 @@ def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], baseline: pd.Dat
     springs, pinned, filtered = families.values()
     base = _base(springs)
     sizes = sorted(pd.concat(families.values())["n"].unique())
-    colour = dict(zip(sizes, style.colours(len(sizes)), strict=True))
+    colour = plots.colours(sizes)
     for row, name in zip(axes, plots.TOTALS, strict=True):
         for ax, column in zip(row, (K, NU, GAMMA), strict=False):
             others = {key: value for key, value in base.items() if key != column}

@@ -57,19 +57,10 @@ class Readout:
 
 
 def draw(given: dict, setup: str, path: str | Path) -> Figure:
-    """Draw the figure for one setup and write it as PNG and PDF: a column for each order.
+    """Draw Fig. 6, a column for each order, as `fiberweb.figures` says.
 
     Args:
-        given: "narma" (`task.table`; a run whose status is "unstable" is drawn as an X) and
-            "narma_errors" (`task.of_runs`), of the same runs.
-        setup: "described" or "published"; rows of the other one are left out.
-        path: of the figure; both suffixes are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "narma" (`task.table`) and "narma_errors" (`task.of_runs`), of the same runs.
     """
     table, estimates = plots.rows_of(given["narma"], "NARMA", setup), given["narma_errors"]
     readouts, shown = _readouts(table), _example(table)
@@ -108,16 +99,16 @@ def _readouts(table: pd.DataFrame) -> list[Readout]:
     runs = table.drop_duplicates("run").sort_values("n")
     colours = style.colours(len(runs))
     signals = table[table["readout"] == "echo_state"].groupby("run")["n_signals"].first()
-    made = [
+    readouts = [
         Readout(run.run, "network", f"{run.n}×{run.n}", colour, colour, "white")
         for run, colour in zip(runs.itertuples(), colours, strict=True)
     ]
-    made += [
+    readouts += [
         Readout(run, "echo_state", f"ESN\n{signals[run]}", "white", colour, style.INK)
         for run, colour in zip(runs["run"], colours, strict=True)
     ]
     first = runs["run"].iloc[0]  # readouts of the input are the same for every run
-    return made + [
+    return readouts + [
         Readout(first, name, label, style.FAINT, style.GREY, style.INK)
         for name, label in TRIVIAL.items()
     ]
@@ -133,12 +124,12 @@ def _example(table: pd.DataFrame) -> Readout:
     return next(one for one in _readouts(table) if (one.run, one.name) == (best, "network"))
 
 
-def _errors(ax: Axes, found: xr.Dataset, readouts: list[Readout], order: int) -> None:
+def _errors(ax: Axes, estimates: xr.Dataset, readouts: list[Readout], order: int) -> None:
     """Violins with the median and the deciles."""
     for place, one in enumerate(readouts):
         at = {"run": one.run, "order": order, "timing": SHOWN}
-        estimate = found["estimate"].sel(at | {"readout": one.name})
-        error = MILLI * (estimate - found["target"].sel(at)).values
+        estimate = estimates["estimate"].sel(at | {"readout": one.name})
+        error = MILLI * (estimate - estimates["target"].sel(at)).values
         if np.isnan(error).any():
             style.mark_unstable(ax, [place])
             continue
@@ -188,9 +179,11 @@ def _bars(ax: Axes, table: pd.DataFrame, readouts: list[Readout], measure: str) 
     ax.locator_params(axis="y", nbins=4)
 
 
-def _traces(ax: Axes, found: xr.Dataset, table: pd.DataFrame, shown: Readout, order: int) -> None:
+def _traces(
+    ax: Axes, estimates: xr.Dataset, table: pd.DataFrame, shown: Readout, order: int
+) -> None:
     """Target (dashed) and estimate at the beginning of the test part."""
-    seen = found.sel(run=shown.run, order=order, timing=SHOWN)
+    seen = estimates.sel(run=shown.run, order=order, timing=SHOWN)
     seen = seen.sel(time=slice(None, float(seen["time"][0]) + TRACE_SECONDS))
     time, estimate = seen["time"].values, MILLI * seen["estimate"].sel(readout=shown.name).values
     ax.plot(time, estimate, **panels.PREDICTION)

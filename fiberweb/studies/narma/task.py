@@ -114,9 +114,9 @@ def estimates(response: xr.Dataset, orders: Sequence[int], rate: float, alpha: f
     y = np.column_stack([series(AMPLITUDE * (1.0 + scaled) / 2.0, order) for order in orders])
     targets = np.stack([y[ahead : len(scaled) + ahead] for ahead in TIMINGS.values()], axis=1)
     flat = targets.reshape(len(scaled), -1)
-    found = [_estimate(x, flat, train, test, alpha) for x in readouts.values()]
+    of_each = [_estimate(x, flat, train, test, alpha) for x in readouts.values()]
     shape = (len(readouts), len(test), len(TIMINGS), len(orders))
-    estimate = np.reshape(found, shape).transpose(0, 2, 3, 1)
+    estimate = np.reshape(of_each, shape).transpose(0, 2, 3, 1)
     return xr.Dataset(
         {
             "target": (("timing", "order", "time"), targets[test].transpose(1, 2, 0)),
@@ -137,44 +137,44 @@ def of_runs(
     response_paths: Sequence[str | Path], orders: Sequence[int], rate: float, alpha: float
 ) -> xr.Dataset:
     """`estimates` of each response along ``run``; errors as there."""
-    found = [estimates(dataset.load(path), orders, rate, alpha) for path in response_paths]
-    return xr.concat(found, "run", join="exact", combine_attrs="identical")
+    of_each = [estimates(dataset.load(path), orders, rate, alpha) for path in response_paths]
+    return xr.concat(of_each, "run", join="exact", combine_attrs="identical")
 
 
-def measures(found: xr.Dataset) -> pd.DataFrame:
+def measures(errors: xr.Dataset) -> pd.DataFrame:
     """How far the estimates are off, on the test part.
 
     Args:
-        found: from `estimates`, of one run or several along ``run``.
+        errors: from `estimates`, of one run or several along ``run``.
 
     Returns:
         One row for each run, order, readout and timing, in the dataset's order: rmse, nrmse (over
         the standard deviation of the target), interdecile_range (between the 10th and the 90th
         percentile of the error, estimate - target), bias (the mean error), n_signals and alpha.
     """
-    error = found["estimate"] - found["target"]
+    error = errors["estimate"] - errors["target"]
     rmse = np.sqrt((error**2).mean("time", skipna=False))
     low, high = (error.quantile(q, "time", skipna=False).drop_vars("quantile") for q in (0.1, 0.9))
     columns = xr.Dataset(
         {
             "rmse": rmse,
-            "nrmse": rmse / found["target"].std("time"),
+            "nrmse": rmse / errors["target"].std("time"),
             "interdecile_range": high - low,
             "bias": error.mean("time", skipna=False),
-            "n_signals": found["n_signals"],
+            "n_signals": errors["n_signals"],
         }
     )
     rows = columns.to_dataframe(dim_order=["run", "order", "readout", "timing"]).reset_index()
-    return rows.assign(alpha=found.attrs["alpha"])
+    return rows.assign(alpha=errors.attrs["alpha"])
 
 
 def table(
-    found: xr.Dataset, capacity_paths: Sequence[str | Path], choices: Sequence[str]
+    errors: xr.Dataset, capacity_paths: Sequence[str | Path], choices: Sequence[str]
 ) -> pd.DataFrame:
     """`tables.study` of the runs with the columns of `measures` after it: one row for each run,
     order, readout and timing. status, c_nl and the like are those of the run's own network."""
     return tables.study(capacity_paths, choices).merge(
-        measures(found), on="run", validate="one_to_many"
+        measures(errors), on="run", validate="one_to_many"
     )
 
 

@@ -17,27 +17,19 @@ from matplotlib.patches import Patch
 from fiberweb.figures import panels, plots, style
 
 MICRO = 1e6  # m to um
-# orders of magnitude, to place the scale
+# m; orders of magnitude by our own estimate, without a source, to place the scale
 INSTRUMENTS = {1e-8: "laser vibrometer", 1e-5: "camera"}
 AMPLITUDES = {"fc": style.FAINT, "ec": style.FAINT, "lw": 0.8}
 BARS = {"elinewidth": 0.8, "capsize": 2.5}  # wider than the markers, or small bars would not show
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw C_nl and C_m over the noise of the readouts, for one setup.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw C_nl and C_m over the noise of the readouts, as `fiberweb.figures` says.
 
     Args:
-        tables: "noise" (`fiberweb.studies.noise.tables.table`) and "noise_baselines" (`tables.input_baselines`).
-        setup: "described" or "published".
-        path: of the figure; PNG and PDF are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "noise" (`tables.table`) and "noise_baselines" (`input_baselines`).
     """
-    rows = plots.rows_of(tables["noise"], "noise", setup)
+    rows = plots.rows_of(given["noise"], "noise", setup)
     colour = plots.colours(rows["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 70.0)
@@ -49,7 +41,7 @@ def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figur
             title = f"{panels.CAPACITIES[name]} ({setup} setup)"
             panels.letter(ax, letter, title, pad=20)  # above the instruments
             ax.set(ylabel=symbol, ylim=(0.0, 1.0))
-            plots.baselines(ax, tables["noise_baselines"], name)
+            plots.baselines(ax, given["noise_baselines"], name)
         panels.key(figure, _handles(rows, colour))
         style.save(figure, path)
     return figure

@@ -83,8 +83,8 @@ def _scored(
     amplitude = median_amplitude(response)
     for given, sigma, seed in _draws(response, noise, seeds):
         scored = capacity.score(given, alpha=alpha)
-        about = {"noise": sigma, "noise_seed": seed, "amplitude": amplitude}
-        yield scored.assign_attrs(about)
+        attrs = {"noise": sigma, "noise_seed": seed, "amplitude": amplitude}
+        yield scored.assign_attrs(attrs)
 
 
 def _draws(

@@ -58,7 +58,7 @@ def memory_peaks_over_tension(evidence: Evidence) -> Answer:
 def _tensions(evidence: Evidence, name: str) -> pd.DataFrame:
     """A capacity over spacing (rows, m) and tension (columns, N)."""
     table = evidence.table("pretension")
-    found = table.pivot(index="spacing_m", columns="tension_N", values=name)
-    if min(found.shape) < 2:
+    c = table.pivot(index="spacing_m", columns="tension_N", values=name)
+    if min(c.shape) < 2:
         raise NotComputed("needs two spacings and two tensions")
-    return complete(found, found.columns, "F_t = {:g} N")
+    return complete(c, c.columns, "F_t = {:g} N")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -17,23 +16,15 @@ PAPERS_LEAST = 0.01  # N
 ASIDE = 1.2  # points from one spacing to the next
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw the pretension study of one setup and write it as PNG and PDF.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw the pretension study, as `fiberweb.figures` says.
 
     Args:
-        tables: "pretension" (`tables.study`) and "ridge_baselines" (`tables.input_baselines`). An unstable
-            run is an X.
-        setup: "described" or "published"; rows of the other one are left out.
-        path: of the figure; both suffixes are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "pretension" (`fiberweb.scoring.tables.study`) and "ridge_baselines"
+            (`input_baselines`).
     """
-    rows = plots.rows_of(tables["pretension"], "pretension", setup)
-    baselines = tables["ridge_baselines"]
+    rows = plots.rows_of(given["pretension"], "pretension", setup)
+    baselines = given["ridge_baselines"]
     colour = plots.colours(rows["spacing_m"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 76.0)

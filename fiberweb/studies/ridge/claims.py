@@ -1,6 +1,6 @@
 """Rules of the claims about force and spacing (Fig. 2a, b), and the authors' table of them.
 
-Those that need the whole map are not computed where the ridge was thinned to forces about B = 1,
+Those that need the whole map are not computed where the ridge was thinned to forces around B = 1,
 as it is in the published setup unless every run of the authors is asked for.
 """
 
@@ -176,11 +176,11 @@ def _every_force(evidence: Evidence) -> dict[float, pd.DataFrame]:
     table = evidence.table("ridge")
     if len(table) < table["spacing_m"].nunique() * table["force_N"].nunique():
         raise NotComputed(THINNED)
-    found = _by_spacing(stable(table))
+    by_spacing = _by_spacing(stable(table))
     for spacing in table["spacing_m"].unique():
-        if len(found.get(spacing, ())) < 3:
+        if len(by_spacing.get(spacing, ())) < 3:
             raise NotComputed(f"{mm(spacing)}: fewer than three stable runs")
-    return found
+    return by_spacing
 
 
 def _edge(c: np.ndarray) -> int:

@@ -28,26 +28,17 @@ CLAIMED = (0.8, 1.5)  # B of the onset, claim R2
 BAND = {"color": style.DIVERGING(0.4), "alpha": 0.6, "lw": 0}
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw the ridge of one setup and write it as PNG and PDF.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw the ridge, as `fiberweb.figures` says; what was not run stays grey.
 
     Args:
-        tables: "ridge" (`tables.study`), "ridge_onset" (`onset.onsets`) and "ridge_baselines"
-            (`tables.input_baselines`). Forces may differ from one spacing to the next; what was not run
-            stays grey, and an unstable run is an X.
-        setup: "described" or "published"; rows of the other one are left out.
-        path: of the figure; both suffixes are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "ridge" (`fiberweb.scoring.tables.study`), "ridge_onset" (`onset.onsets`) and
+            "ridge_baselines" (`input_baselines`). Forces may differ from one spacing to the next.
     """
-    ridge = plots.rows_of(tables["ridge"], "ridge", setup)
-    onset = tables["ridge_onset"]
+    ridge = plots.rows_of(given["ridge"], "ridge", setup)
+    onset = given["ridge_onset"]
     onset = onset[onset["setup"] == setup]
-    baselines = tables["ridge_baselines"]
+    baselines = given["ridge_baselines"]
     colour = plots.colours(ridge["spacing_m"])
     size = f"{ridge['n'].iloc[0]}×{ridge['n'].iloc[0]}"
     with style.applied():
@@ -96,7 +87,7 @@ def _map(
 
 
 def _edges(centres: np.ndarray) -> np.ndarray:
-    """Edges of cells about sorted centres, halfway between neighbours, shape (cells + 1,)."""
+    """Edges of cells around sorted centres, halfway between neighbours, shape (cells + 1,)."""
     gaps = np.diff(centres) if len(centres) > 1 else np.ones(1)
     return np.r_[centres[0] - gaps[0] / 2, centres[:-1] + np.diff(centres) / 2,
                  centres[-1] + gaps[-1] / 2]  # fmt: skip

@@ -36,14 +36,14 @@ def onsets(ridge: pd.DataFrame) -> pd.DataFrame:
 def _one(frame: pd.DataFrame) -> dict[str, float]:
     """The columns of one spacing but the first two."""
     stable = frame[frame["status"] == "ok"].sort_values("buckling_number")
-    found = {"points": len(stable)} | _drop(stable)
+    columns = {"points": len(stable)} | _drop(stable)
     for name in ("c_nl", "c_m"):
         if len(stable):
             best = stable.loc[stable[name].idxmax()]
-            found[f"best_{name}"] = best[name]
-            found[f"best_{name}_force_N"] = best["force_N"]
-            found[f"best_{name}_B"] = best["buckling_number"]
-    return found
+            columns[f"best_{name}"] = best[name]
+            columns[f"best_{name}_force_N"] = best["force_N"]
+            columns[f"best_{name}_B"] = best["buckling_number"]
+    return columns
 
 
 def _drop(stable: pd.DataFrame) -> dict[str, float]:

@@ -22,24 +22,16 @@ CAP = 2.5  # points: wider than the markers, or small bars would not show
 LINE = 0.06  # height of a line of text, in capacity
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw C_nl and C_m of each seed, and over the ridge penalty, for one setup.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw C_nl and C_m of each seed, and over the ridge penalty, as `fiberweb.figures` says.
 
     Args:
-        tables: "robustness" (`tables.study`), "robustness_alpha" (`robustness.alphas`) and
-            "robustness_baselines" (`tables.input_baselines`, of the first seed).
-        setup: "described" or "published".
-        path: of the figure; PNG and PDF are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: a table has no run of this setup.
+        given: "robustness" (`fiberweb.scoring.tables.study`), "robustness_alpha" (`tables.alphas`)
+            and "robustness_baselines" (`input_baselines`, of the first seed).
     """
-    seeds = plots.rows_of(tables["robustness"], "robustness", setup)
-    alphas = plots.rows_of(tables["robustness_alpha"], "robustness_alpha", setup)
-    baselines = tables["robustness_baselines"]
+    seeds = plots.rows_of(given["robustness"], "robustness", setup)
+    alphas = plots.rows_of(given["robustness_alpha"], "robustness_alpha", setup)
+    baselines = given["robustness_baselines"]
     colour = plots.colours(seeds["n"])
     with style.applied():
         figure = style.figure(style.DOUBLE, 122.0)
@@ -82,11 +74,11 @@ def _seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
 def _mean_of_seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict, place: int) -> None:
     """Mean and spread of every network's seeds, in figures too, one above the other."""
     of_n = rows.groupby("n")
-    found = pd.DataFrame(
+    spread = pd.DataFrame(
         {"mean": of_n[name].mean(), "sd": of_n[name].std(), "se": of_n[f"{name}_se"].mean()}
     )
     below = -np.inf
-    for n, one in found.dropna(subset="mean").sort_values("mean").iterrows():
+    for n, one in spread.dropna(subset="mean").sort_values("mean").iterrows():
         ax.errorbar(
             [place], [one["mean"]], [one["sd"]], color=colour[n], elinewidth=1.2,
             capsize=CAP + 0.5, **MEAN,

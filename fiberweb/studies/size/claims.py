@@ -62,5 +62,5 @@ def _sizes(evidence: Evidence, name: str) -> dict[float, list[float]]:
     spacings = sorted(table["spacing_m"].unique())
     table = stable(table).sort_values("time_step_s")
     table = table.drop_duplicates(["spacing_m", "n"], keep="last")
-    found = table.pivot(index="spacing_m", columns="n", values=name).reindex(spacings)
-    return {s: list(row) for s, row in complete(found, CROSSHATCHES, "N = {}").iterrows()}
+    by_size = table.pivot(index="spacing_m", columns="n", values=name).reindex(spacings)
+    return {s: list(row) for s, row in complete(by_size, CROSSHATCHES, "N = {}").iterrows()}

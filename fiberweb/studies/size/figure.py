@@ -23,30 +23,21 @@ MARKERS = {  # the shorter step lies upon the longer one
 ASIDE = 0.9  # points from one spacing to the next
 
 
-def draw(tables: dict[str, pd.DataFrame], setup: str, path: str | Path) -> Figure:
-    """Draw the size study of one setup and write it as PNG and PDF.
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw the size study, as `fiberweb.figures` says.
 
     C_nl is drawn at the forces chosen for C_nl and C_m at those chosen for C_m: over N, one line a
     spacing, at the longer step where a run was repeated at a shorter one; and over spacing, at both
     steps, for each N that was.
 
     Args:
-        tables: "size" (`tables.study`) and "ridge_baselines" (`tables.input_baselines`). An unstable run is
-            an X.
-        setup: "described" or "published"; rows of the other one are left out.
-        path: of the figure; both suffixes are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "size" (`fiberweb.scoring.tables.study`) and "ridge_baselines" (`input_baselines`).
     """
-    size = plots.rows_of(tables["size"], "size", setup).sort_values("time_step_s")
+    size = plots.rows_of(given["size"], "size", setup).sort_values("time_step_s")
     repeated = size[size.duplicated(RUN, keep=False)]
     twice = sorted(repeated["n"].unique())
     over_size = size["n"].nunique() > 1 or not twice
-    baselines = tables["ridge_baselines"]
+    baselines = given["ridge_baselines"]
     colour = plots.colours(size["spacing_m"])
     letters = iter("abcdefgh")
     with style.applied():

@@ -33,21 +33,13 @@ TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick":
 
 
 def draw(given: dict, setup: str, path: str | Path) -> Figure:
-    """Draw Fig. 1 for one setup and write it as PNG and PDF.
+    """Draw Fig. 1, as `fiberweb.figures` says.
 
     Args:
-        given: "topology" (`tables.study`; a run whose status is "unstable" is drawn as an X),
-            "topology_curves" (`tables.curves`), "topology_baselines" (`tables.input_baselines`) and
-            "topology_traces" (`traces.example_traces`), which leaves panel d out if it has
-            nothing or nothing but NaN.
-        setup: "described" or "published"; rows of the other one are left out.
-        path: of the figure; both suffixes are written beside each other.
-
-    Returns:
-        The figure.
-
-    Raises:
-        ValueError: the table has no run of this setup.
+        given: "topology" (`fiberweb.scoring.tables.study`), "topology_curves" (`curves`),
+            "topology_baselines" (`input_baselines`) and "topology_traces"
+            (`traces.example_traces`), which leaves panel d out if it has nothing or nothing but
+            NaN.
     """
     table = plots.rows_of(given["topology"], "topology", setup)
     curves, baselines, traces = (

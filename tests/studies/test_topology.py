@@ -1,17 +1,16 @@
-"""Figures draw from synthetic tables: the files, their size and bytes, the X of an unstable run."""
+"""Fig. 1 from synthetic tables: what it draws, its files and bytes, the X of an unstable run."""
 
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from matplotlib.text import Text
 from numpy.polynomial.legendre import legvander
 
 from fiberweb import Scene, crosshatch
-from fiberweb.figures import style
+from fiberweb.figures import panels, plots
 from fiberweb.model.drive import spline
 from fiberweb.studies.topology import figure as topology
-from tests.figures.legible import assert_legible
+from tests.figures.legible import BASELINES, assert_legible, assert_written, marked, said
 
 SIZES = {"crosshatch": (2, 4, 6, 8, 10, 12), "polygon": (6, 8, 10, 12)}
 SETUPS = ("described", "published")
@@ -66,15 +65,6 @@ def example_traces():
     )
 
 
-def texts(figure):
-    """Every text that is drawn and says something."""
-    return [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
-
-
-def titles(figure):
-    return " ".join(text.get_text() for text in texts(figure))
-
-
 def png_size(path):
     """Width and height in pixels, from the file's header."""
     header = path.read_bytes()[:24]
@@ -108,7 +98,7 @@ def test_an_unstable_run_is_an_x_in_both_totals(drawn):
     figure, _ = drawn
     marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
     assert [(list(mark.get_xdata()), mark.get_marker()) for mark in marks] == [([10], "X")] * 2
-    assert "unstable run" in titles(figure)
+    assert "unstable run" in said(figure)
 
 
 def test_no_text_overlaps_and_none_is_too_small(drawn):
@@ -116,7 +106,7 @@ def test_no_text_overlaps_and_none_is_too_small(drawn):
 
 
 def test_panels_are_lettered_in_order_and_name_what_they_show(drawn):
-    said = titles(drawn[0])
+    said = said(drawn[0])
     for words in (
         "Networks (described",
         "Polygonal networks (described",
@@ -134,7 +124,7 @@ def test_without_traces_the_last_panel_is_left_out(data, drawn, tmp_path):
     for number, nothing in enumerate((None, unknown)):
         path = tmp_path / f"{number}.png"
         figure = topology.draw(table, curves, baselines, nothing, "described", path)
-        assert "Example computations" not in titles(figure)
+        assert "Example computations" not in said(figure)
         assert png_size(path)[1] < png_size(drawn[1])[1]
 
 
@@ -143,7 +133,7 @@ def test_a_study_of_few_networks_is_drawn(data, tmp_path, kind):
     table, curves, _, _ = data
     few = [frame[(frame["topology"] == kind) & (frame["n"] <= 6)] for frame in (table, curves)]
     figure = topology.draw(*few, None, None, "published", tmp_path / "few.png")
-    assert ("Polygonal" in titles(figure)) == (kind == "polygon")
+    assert ("Polygonal" in said(figure)) == (kind == "polygon")
     assert not figure.findobj(lambda artist: artist.get_gid() == "unstable")
 
 
@@ -162,23 +152,9 @@ def test_a_setup_without_runs_is_refused(data, tmp_path):
         topology.draw(table, curves, baselines, None, "published", tmp_path / "none.png")
 
 
-def test_a_dot_in_the_name_is_not_a_suffix(tmp_path):
-    png, pdf = style.save(style.figure(style.SINGLE, 20), tmp_path / "new" / "s100.0mm")
-    assert (png.name, pdf.name) == ("s100.0mm.png", "s100.0mm.pdf")
-    assert png.exists() and pdf.exists()
-
-
 def test_drawing_leaves_matplotlib_as_it_was(data, tmp_path):
     import matplotlib as mpl
 
     before = dict(mpl.rcParams)
     topology.draw(*data[:3], None, "described", tmp_path / "a.png")
     assert dict(mpl.rcParams) == before
-
-
-def test_colours_are_distinct_and_dark_enough_to_show():
-    colours = style.colours(6)
-    assert len(np.unique(colours, axis=0)) == 6
-    assert style.colours(1).shape == (1, 4)
-    luminance = colours[:, :3] @ [0.2126, 0.7152, 0.0722]
-    assert luminance.max() < 0.8

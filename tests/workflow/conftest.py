@@ -1,0 +1,81 @@
+"""A copy of the tree, so that files can be edited, with a kernel cache of its own."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+COPIED = ("Snakefile", "config", "envs", "fiberweb", "profiles", "workflow")
+SMOKE = ("--configfile", "config/smoke.yaml", "--config", "results=out")
+
+
+class Tree:
+    """A copy of what the workflow needs, and Snakemake in it."""
+
+    def __init__(self, folder):
+        self.folder = folder / "tree"
+        self.folder.mkdir()
+        for name in COPIED:
+            source = ROOT / name
+            copy = shutil.copytree if source.is_dir() else shutil.copy2
+            copy(source, self.folder / name)
+        self.environment = os.environ | {
+            "PYTHONPATH": str(self.folder),
+            "FIBERWEB_CACHE": str(folder / "cache"),
+        }
+        self.environment.pop("NUMBA_CACHE_DIR", None)
+
+    def snakemake(self, *arguments, cores=2):
+        """Standard error of a call that must succeed."""
+        done = subprocess.run(
+            [sys.executable, "-m", "snakemake", *arguments, "--cores", str(cores)],
+            cwd=self.folder, env=self.environment, capture_output=True, text=True,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout + done.stderr
+
+    def jobs(self, *arguments):
+        """Count of jobs by rule; {} if there is nothing to do."""
+        printed = self.snakemake(*arguments)
+        if "Nothing to be done" in printed:
+            return {}
+        table = printed.split("Job stats:\n")[1].split("\n\n")[0]
+        counts = dict(re.findall(r"^(\w+) +(\d+)$", table, flags=re.MULTILINE))
+        assert int(counts.pop("total")) == sum(map(int, counts.values()))
+        return {rule: int(count) for rule, count in counts.items()}
+
+    def planned(self, *arguments):
+        return self.jobs(*arguments[:1], "--dry-run", *arguments[1:])
+
+
+@pytest.fixture(scope="session")
+def tree(tmp_path_factory):
+    return Tree(tmp_path_factory.mktemp("workflow"))
+
+
+@pytest.fixture(scope="session")
+def smoked(tree):
+    """The tree after the smoke run."""
+    tree.snakemake("figures", *SMOKE)
+    return tree
+
+
+@pytest.fixture
+def edited(smoked):
+    """Append a line to a file of the tree; undone after the test, time stamps included."""
+    kept = []
+
+    def edit(name, text="\n# edited\n", start=None):
+        path = smoked.folder / name
+        kept.append((path, path.read_bytes(), path.stat()))
+        path.write_text((path.read_text() if start is None else start) + text)
+
+    yield edit
+    for path, content, stat in reversed(kept):
+        path.write_bytes(content)
+        os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))

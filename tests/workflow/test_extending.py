@@ -1,0 +1,67 @@
+"""docs/extending.md does what it says: its study is added in the places that it names, and runs."""
+
+import re
+import shutil
+
+import matplotlib as mpl
+import matplotlib.image
+import numpy as np
+import pandas as pd
+import pytest
+
+from tests.workflow.conftest import ROOT
+
+PAGE = (ROOT / "docs" / "extending.md").read_text()
+FILE = re.compile(r"^`([\w/.]+)`:\n\n```\w+\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def section(title):
+    return PAGE.split(f"\n## {title}\n")[1].split("\n## ")[0]
+
+
+def added(text):
+    """(line before, line to add) of each diff block."""
+    for block in re.findall(r"```diff\n(.*?)```", text, re.DOTALL):
+        lines = block.splitlines()
+        at = next(i for i, line in enumerate(lines) if line.startswith("+"))
+        yield lines[at - 1][1:] + "\n", lines[at][1:] + "\n"
+
+
+@pytest.mark.slow
+def test_the_study_of_the_page(smoked, edited):
+    tree, page = smoked, section("A study")
+    before = {path for path in (tree.folder / "fiberweb").rglob("*")}
+    for name, text in FILE.findall(page):
+        path = tree.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    ((above, line),) = added(page)
+    registry = tree.folder / "fiberweb" / "studies" / "__init__.py"
+    assert registry.read_text().count(above) == 1
+    edited("fiberweb/studies/__init__.py", "", registry.read_text().replace(above, above + line))
+    (keys,) = re.findall(r"In `config/config.yaml`.*?```yaml\n(.*?)```", page, re.DOTALL)
+    edited("config/config.yaml", f"\n{keys}")
+    # one folder, one line of the registry, one section of the config
+    new = {path for path in (tree.folder / "fiberweb").rglob("*")} - before
+    assert {path.relative_to(tree.folder / "fiberweb").parts[:2] for path in new} == {
+        ("studies", "stiffness")
+    }
+    keys = "results: toy\nstiffness: {n: 2, youngs_modulus: [1.0e+8, 3.0e+8]}\n"
+    (tree.folder / "short.yaml").write_text(keys)
+    small = ("--configfile", "config/smoke.yaml", "short.yaml")
+    tree.snakemake("stiffness", *small)
+    out = tree.folder / "toy"
+    table = pd.read_csv(out / "tables" / "described" / "stiffness.csv")
+    assert list(table["youngs_modulus_Pa"]) == [1e8, 3e8]
+    assert table["buckling_number"].nunique() == 1 and (table["status"] == "ok").all()
+    assert np.ptp(mpl.image.imread(out / "figures" / "stiffness.png")) > 0.5
+    assert tree.planned("stiffness", *small) == {}
+    shutil.rmtree(tree.folder / "fiberweb" / "studies" / "stiffness")
+
+
+@pytest.mark.parametrize("title", ["A study", "A figure of an existing study", "An engine"])
+def test_lines_to_change_are_there(title):
+    for (above, _), name in zip(
+        added(section(title)), re.findall(r"In `([\w/]+\.py)`, add", section(title)), strict=True
+    ):
+        assert (ROOT / name).read_text().count(above) == 1, name
