@@ -11,6 +11,7 @@
 
 import subprocess
 import sys
+import time
 
 from snakemake.utils import min_version
 
@@ -24,6 +25,7 @@ report: "workflow/report/workflow.rst"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/inputs.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
 include: "workflow/rules/study.smk"
@@ -62,4 +64,5 @@ onstart:
 
 
 onsuccess:
+    print(f"Snakemake's own process took {time.process_time():.0f} s of CPU time.")
     print(f"Done: figures in {RESULTS}/figures, tables and claims in {RESULTS}/tables/<setup>.")

@@ -3,7 +3,6 @@ the studies make what is in them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 import pandas as pd
@@ -27,26 +26,6 @@ def write(frame: pd.DataFrame, path: str | Path) -> None:
 def read(path: str | Path) -> pd.DataFrame:
     """The table that `write` wrote; an empty cell is NaN."""
     return pd.read_csv(path)
-
-
-def merge(paths: Iterable[str | Path]) -> pd.DataFrame:
-    """The rows of several tables with the same columns, such as one table of each setup.
-
-    Raises:
-        ValueError: no table, or tables whose columns are not the same.
-    """
-    frames = {Path(path): read(path) for path in paths}
-    if not frames:
-        raise ValueError("there is no table to merge; give at least one path")
-    (first, head), *others = frames.items()
-    for path, frame in others:
-        if list(frame.columns) != list(head.columns):
-            raise ValueError(
-                f"{path} has the columns {', '.join(frame.columns)} but {first} has "
-                f"{', '.join(head.columns)}; merge tables of one kind only"
-            )
-    filled = [frame for frame in frames.values() if len(frame)] or [head]
-    return ordered(pd.concat(filled, ignore_index=True))
 
 
 def ordered(frame: pd.DataFrame) -> pd.DataFrame:

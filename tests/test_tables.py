@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-import pytest
 
 from fiberweb import tables
 
@@ -43,15 +42,3 @@ def test_equal_rows_keep_their_order():
     assert tables.ordered(frame)["choice"].tolist() == ["a", "b", "a"]
     frame = pd.DataFrame({"choice": ["b", "a"]})
     assert tables.ordered(frame)["choice"].tolist() == ["b", "a"]
-
-
-def test_merge_joins_tables_of_one_kind_only(tmp_path):
-    tables.write(TABLE[2:], tmp_path / "published.csv")
-    tables.write(TABLE[:2], tmp_path / "described.csv")
-    merged = tables.merge([tmp_path / "published.csv", tmp_path / "described.csv"])
-    pd.testing.assert_frame_equal(merged, TABLE, rtol=1e-9, check_dtype=False)
-    tables.write(TABLE.drop(columns="c_nl"), tmp_path / "other.csv")
-    with pytest.raises(ValueError, match=r"other.csv has the columns .* merge tables of one kind"):
-        tables.merge([tmp_path / "described.csv", tmp_path / "other.csv"])
-    with pytest.raises(ValueError, match="no table to merge"):
-        tables.merge([])

@@ -19,7 +19,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import pandas as pd
-import yaml
+
+from fiberweb.claims.listed import load
 
 # in a capacity; our own choice: the paper gives no errors
 ALLOWANCE = 0.03
@@ -125,13 +126,6 @@ def rules(modules: Iterable[str]) -> dict[str, Callable[[Evidence], Answer]]:
     """The rule of each claim that has one, of modules such as "fiberweb.studies.ridge.claims"."""
     functions = [f for name in modules for f in vars(import_module(name)).values()]
     return {claim: f for f in functions for claim in getattr(f, "claims", ())}
-
-
-def load() -> list[dict]:
-    """The claims in the paper's order: dicts with id, figure, kind, statement and, by kind,
-    paper and tolerance, or range."""
-    text = Path(__file__).with_name("claims.yaml").read_text(encoding="utf-8")
-    return yaml.safe_load(text)
 
 
 def evaluate(

@@ -130,7 +130,7 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
 
 @kernel
 def no_motion(count):
-    """Room for the motion of so many pairs or members: one block, which takes a few % less time."""
+    """Room for the motion of so many pairs or members, in one block."""
     rows = np.zeros((4, count))
     return Motion(rows[0], rows[1], rows[2], rows[3])
 

@@ -35,7 +35,7 @@ def cut(scene: Scene, target: float) -> list[Line]:
         ends = network.sections(fibre)
         lengths = np.diff(ends)
         most = np.maximum(1, np.floor(lengths / (ELEMENT_FLOOR * scene.diameter))).astype(int)
-        # the floor is for the short sections of a polygon; a uniform mesh is the user's choice
+        # the limit is for the short sections of a polygon; a uniform mesh is the user's choice
         counts = np.maximum(1, np.round(lengths / target)).astype(int)
         if network.topology == "polygon":
             counts = np.minimum(counts, most)

@@ -55,7 +55,8 @@ class Scene:
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
         tension_ramp: time over which the tension grows from zero (s).
-        disturbance: lateral displacement of the driven point at the start (m), for twin runs.
+        disturbance: lateral displacement of the driven point at the start (m), for perturbed
+            pairs of runs.
         centre_lines: record every node of the fibres as well, to draw them.
 
     Raises:

@@ -89,21 +89,19 @@ def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
     return _frame(records, CURVE_COLUMNS)
 
 
-def input_baselines(
-    response_path: str | Path, alpha: float = 0.01, scoring: str | None = None, **options: object
+def baselines(
+    response: xr.Dataset, alpha: float = 0.01, scoring: str | None = None, **options: object
 ) -> pd.DataFrame:
     """Input-only baselines: what readouts made of the input alone score.
 
     Args:
-        response_path: a response; of it only the input and its sample rate are used, and every
-            run of a study has the same.
+        response: of it only the input and its sample rate are used.
         alpha, scoring, **options: as for `capacity.score_arrays`; scoring None is the one of
             the response's setup.
 
     Returns:
         A frame of `BASELINE_COLUMNS`, readout being "u", "derivatives" or "powers".
     """
-    response = dataset.load(response_path)
     scoring = scoring or capacity.own_scoring(response)
     sample_rate = float(response.attrs["sample_rate"])
     u = response["input"].values  # whole even in an unstable run
@@ -114,6 +112,11 @@ def input_baselines(
         )
         records.append((name, scored.c_nl, scored.c_m))
     return _frame(records, BASELINE_COLUMNS)
+
+
+def input_baselines(response_path: str | Path, **options: object) -> pd.DataFrame:
+    """`baselines` of a response in a file, whose input every run of a study has."""
+    return baselines(dataset.load(response_path), **options)
 
 
 def _read_run(given):

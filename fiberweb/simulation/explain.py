@@ -10,7 +10,7 @@ from fiberweb.simulation.plan import ACCURACIES, Plan, plan, safety
 # Shear and rotary inertia left out change trajectories by this much at so many diameters of
 # spacing, and by less as the inverse square. Source: model_ladder.csv.
 SHEAR, SHEAR_AT = 2.3e-3, 50.0
-CHAOS = 1.5  # buckling number above which twins part; source: chaos_rates.csv
+CHAOS = 1.5  # buckling number above which perturbed pairs part; source: chaos_rates.csv
 PLANE = 0.5  # buckling number above which a push turns fibres out; source: out_of_plane.csv
 STUBBY = 10.0  # spacing in diameters below which shear costs over 0.05; source: as for SHEAR
 # Share of EA above which a force strains a fibre more than a beam can be: there networks were torn

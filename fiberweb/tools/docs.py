@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb.claims.judge import join
+
 DOCS = Path(__file__).parents[2] / "docs"
 SETUPS = ("described", "published")
 START, END = "<!-- table:", "<!-- end -->"
@@ -70,15 +72,9 @@ def cell(row: pd.Series, what: str) -> str:
 
 def claims(tables: Path) -> pd.DataFrame | None:
     """Every claim with the value and the verdict in each setup at hand; None without any."""
-    given = [setup for setup in SETUPS if (tables / setup / "claims.csv").exists()]
-    found = {s: pd.read_csv(tables / s / "claims.csv", dtype=str, index_col="id") for s in given}
-    if not found:
-        return None
-    said = pd.concat([frame[["statement", "paper"]] for frame in found.values()])
-    joined = said[~said.index.duplicated()]
-    for setup, frame in found.items():
-        joined = joined.assign(**{setup: frame["value"], f"{setup}_verdict": frame["verdict"]})
-    return joined.rename_axis("id").reset_index()
+    paths = {setup: tables / setup / "claims.csv" for setup in SETUPS}
+    given = {setup: pd.read_csv(path, dtype=str) for setup, path in paths.items() if path.exists()}
+    return join(given).drop(columns=["figure", "kind"]) if given else None
 
 
 def limits(table: pd.DataFrame) -> pd.DataFrame:

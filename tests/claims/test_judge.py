@@ -23,30 +23,54 @@ def test_every_claim_has_one_row_and_a_verdict_word():
 
 
 def test_claims_without_their_tables_are_not_computed():
-    result = claims.evaluate({}).set_index("id")
-    assert set(result["published_verdict"]) == {"not computed"}
-    reference = result.index.str.startswith("G")
-    assert set(result.loc[reference, "described_verdict"]) == {"not applicable"}
-    assert set(result.loc[~reference, "described_verdict"]) == {"not computed"}
+    published = claims.evaluate({}, "published", MODULES)
+    assert set(published["verdict"]) == {"not computed"}
+    described = claims.evaluate({}, "described", MODULES).set_index("id")["verdict"]
+    reference = described.index.str.startswith("G")
+    assert set(described[reference]) == {"not applicable"}
+    assert set(described[~reference]) == {"not computed"}
 
 
 def test_a_setup_without_runs_is_not_computed():
-    result = claims.evaluate(
-        {"topology": topology_table("described"), "topology_curves": curve_table("described")}
-    ).set_index("id")
-    assert result.loc["T5", "described_verdict"] == "holds"
-    assert result.loc["T5", "published_verdict"] == "not computed"
+    tables = {
+        "topology": topology_table("described"), "topology_curves": curve_table("described")
+    }  # fmt: skip
+    for setup, verdict in (("described", "holds"), ("published", "not computed")):
+        result = claims.evaluate(tables, setup, MODULES).set_index("id")
+        assert result.loc["T5", "verdict"] == verdict
+
+
+def test_setups_stand_side_by_side():
+    """In columns named after them, as they were judged."""
+    by_setup = {}
+    for setup in ("described", "published"):
+        tables = {"topology": topology_table(setup), "topology_curves": curve_table(setup)}
+        by_setup[setup] = claims.evaluate(tables, setup, MODULES)
+    joined = claims.join(by_setup)
+    shared = list(claims.COLUMNS[:-2])
+    assert list(joined.columns) == [
+        *shared, "described", "described_verdict", "published", "published_verdict"
+    ]  # fmt: skip
+    for setup, frame in by_setup.items():
+        pd.testing.assert_frame_equal(joined[shared], frame[shared])
+        assert list(joined[setup]) == list(frame["value"])
+        assert list(joined[f"{setup}_verdict"]) == list(frame["verdict"])
+    verdicts = joined.set_index("id").loc["T1", ["described_verdict", "published_verdict"]]
+    assert list(verdicts) == ["calibrated", "holds"]
 
 
 def test_every_rule_is_written_down_and_belongs_to_a_claim():
-    rules = claims.rules()
+    rules = claims.rules(MODULES)
     assert {"T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9", "G3"} <= set(rules)
+    assert {"R1", "R5", "S1", "S2", "P1", "P2", "F1", "F7", "G1", "G2"} <= set(rules)
     assert set(rules) <= {claim["id"] for claim in claims.load()}
-    assert all(rules.values())
+    assert all(rule.__doc__ for rule in rules.values())
+    of_each = [set(claims.rules([module])) for module in MODULES]
+    assert sum(map(len, of_each)) == len(rules)  # no claim has two rules
 
 
 def test_the_papers_word_stands_beside_ours():
-    paper = claims.evaluate({}).set_index("id")["paper"]
+    paper = claims.evaluate({}, "published", MODULES).set_index("id")["paper"]
     assert paper["T1"] == "0.999"
     assert paper["R2"] == "0.8 to 1.5"
     assert paper["N4"] == "0.00246, 0.02383, 0.04082"

@@ -16,7 +16,7 @@ from fiberweb.model.mesh import Mesh, Readout, build
 from fiberweb.model.network import Network
 from fiberweb.model.scene import Scene
 
-ENGINES = tuple(engines.ENGINES)
+ENGINES = ("kirchhoff", "cosserat", "elastica")
 PLANAR = ("kirchhoff", "cosserat")
 # a smooth bump: the cubic B-spline over four knot intervals, highest power first
 BUMP = np.array([[1, 0, 0, 0], [-3, 3, 3, 1], [3, -6, 0, 4], [-1, 3, -3, 1]]) / 6

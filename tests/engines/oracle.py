@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import expm
 
+from fiberweb.model.buckling import second_moment
 from fiberweb.model.mesh import Mesh
 from fiberweb.model.scene import Scene
 
@@ -121,8 +122,8 @@ def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
     rest_angles = [np.arctan2(*np.diff(x[f], axis=0).T[::-1]) for f in fibres]
     angles = [a.copy() for a in rest_angles]
     spins = [np.zeros(len(a)) for a in angles]
-    inertia = [scene.density * np.pi * scene.diameter**4 / 64 * mesh.edges(f)
-               for f in range(len(fibres))]  # fmt: skip
+    per_length = scene.density * second_moment(scene.diameter)
+    inertia = [per_length * mesh.edges(f) for f in range(len(fibres))]
     out = [x - mesh.position]
     for k in range(steps):
         time = (k + 0.5) * step

@@ -16,6 +16,7 @@ from fiberweb.engines.base import Engine
 from fiberweb.model.mesh import build
 from fiberweb.model.network import crosshatch
 from fiberweb.model.scene import Scene
+from tests.engines.fibres import ENGINES
 
 ROOT = Path(fiberweb.__file__).parent
 ATTRIBUTES = list(Engine.__annotations__)
@@ -44,7 +45,7 @@ def small(**fields):
     return build(Scene(crosshatch(2, spacing=0.1), **fields), 4)
 
 
-@pytest.mark.parametrize("name", engines.ENGINES)
+@pytest.mark.parametrize("name", ENGINES)
 def test_what_an_engine_does_not_model_it_refuses(name):
     cosserat = name != "kirchhoff"
     assert engines.accepts(name, small())

@@ -6,6 +6,7 @@ from elastica import PositionVerlet
 
 from fiberweb.engines import elastica, kirchhoff
 from fiberweb.engines.base import Numerics
+from fiberweb.model.buckling import second_moment
 from tests.engines.fibres import (
     ENGINES,
     fibre,
@@ -72,7 +73,7 @@ def test_angular_momentum_of_a_free_fibre(engine):
         edges = np.diff(position, axis=1)
         stretch = np.linalg.norm(edges, axis=2) / mesh.edges(0)
         angle = np.unwrap(np.arctan2(edges[..., 1], edges[..., 0]), axis=0)
-        inertia = mesh.scene.density * np.pi * mesh.scene.diameter**4 / 64 * mesh.edges(0)
+        inertia = mesh.scene.density * second_moment(mesh.scene.diameter) * mesh.edges(0)
         spin = (inertia * np.gradient(angle, step, axis=0) / stretch).sum(axis=1)
         whole = (whole + spin)[1:-1]
         tolerance = 1e-6

@@ -8,7 +8,6 @@ from matplotlib.text import Text
 
 from fiberweb.figures import style
 
-
 BASELINES = pd.DataFrame(
     {
         "readout": ["u", "derivatives", "powers"],

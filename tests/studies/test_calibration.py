@@ -155,8 +155,10 @@ def points():
     rows[-1]["status"] = "unstable"
     table = pd.DataFrame(rows)
     return {
-        "calibration": table, "calibration_check": calibration.check(table), "ridge_baselines": BASELINES
-    }  # fmt: skip
+        "calibration": table,
+        "calibration_check": calibration.check(table),
+        "ridge_baselines": BASELINES,
+    }
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from fiberweb.simulation import dataset
 from fiberweb.studies.features import figure as plotting
 from fiberweb.studies.features import tables as features
 from fiberweb.tables import read, write
-from tests.figures.legible import assert_legible
+from tests.figures.legible import assert_legible, assert_written, marked, said
 
 RATE = 25.0
 BASELINES = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.14, 0.41], "c_m": [0.09, 0.28]})
@@ -58,15 +58,15 @@ def study(tmp_path_factory):
         paths.append((folder / f"{number}c.nc", folder / f"{number}r.nc"))
         dataset.save(capacity.score(run), paths[-1][0])
         dataset.save(run, paths[-1][1])
-    made = {
+    frames = {
         "features": features.group_table(*zip(*paths), ["grid"] * 3, 0.1, 0.2),
         "features_greedy": features.greedy_table(paths[1][1], 0.1, 0.95),
-        "features_baselines": tables.input_baselines(paths[1][1], 0.1),
+        "features_baselines": tables.input_baselines(paths[1][1], alpha=0.1),
         "unstable": features.greedy_table(paths[2][1], 0.1, 0.95),
     }
-    for name, frame in made.items():
+    for name, frame in frames.items():
         write(frame, folder / f"{name}.csv")
-    return {name: read(folder / f"{name}.csv") for name in made}, runs
+    return {name: read(folder / f"{name}.csv") for name in frames}, runs
 
 
 def test_one_row_for_each_run_group_and_split(study):
@@ -80,11 +80,11 @@ def test_one_row_for_each_run_group_and_split(study):
 
 
 def test_a_group_is_scored_on_its_own_signals(study):
-    made, runs = study
+    frames, runs = study
     u, moved = capacity.signals(runs[1])
     network = crosshatch(4, length=0.5)
     some = moved[:, groups.mask("near_actuation", network, runs[1])]
-    table = made["features"]
+    table = frames["features"]
     rows = table[(table["force_N"] == 0.2) & (table["group"] == "near_actuation")]
     chronological, shuffled = (rows[rows["split"] == s].iloc[0] for s in rows["split"])
     expected = capacity.score_arrays(u, some, RATE, alpha=0.1)
@@ -97,18 +97,18 @@ def test_a_group_is_scored_on_its_own_signals(study):
 
 
 def test_an_unstable_run_keeps_its_rows_without_numbers(study):
-    made, _ = study
-    table = made["features"]
+    frames, _ = study
+    table = frames["features"]
     rows = table[table["status"] == "unstable"]
     assert set(rows["force_N"]) == {0.9} and len(rows) == 2 * len(groups.GROUPS)
     assert rows[["c_nl", "c_m_se", "effective_rank"]].isna().all(axis=None)
-    assert list(made["unstable"]["target"]) == ["c_m", "c_nl"]
-    assert made["unstable"]["c_nl"].isna().all()
+    assert list(frames["unstable"]["target"]) == ["c_m", "c_nl"]
+    assert frames["unstable"]["c_nl"].isna().all()
 
 
 def test_greedy_rows_name_their_signals_and_end_with_all(study):
-    made, runs = study
-    greedy = made["features_greedy"]
+    frames, runs = study
+    greedy = frames["features_greedy"]
     assert list(greedy.columns) == list(features.GREEDY_COLUMNS)
     for target, rows in greedy.groupby("target"):
         assert list(rows["n_chosen"]) == list(range(1, 113))
@@ -122,28 +122,54 @@ def test_greedy_rows_name_their_signals_and_end_with_all(study):
 
 
 def test_the_figure_marks_unstable_runs_and_shows_the_share(study, tmp_path):
-    made = study[0] | {"features_baselines": BASELINES}
-    figure = plotting.draw(made, "described", tmp_path / "features.png")
-    assert (tmp_path / "features.png").stat().st_size > 50_000
-    marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
-    assert len(marks) == 2  # C_nl and C_m
-    said = " ".join(t.get_text() for t in figure.findobj(lambda a: hasattr(a, "get_text")))
-    needed = made["features_greedy"].groupby("target")["needed"].first()
+    frames = study[0] | {"features_baselines": BASELINES}
+    figure = plotting.draw(frames, "described", tmp_path / "features.png")
+    assert_written(tmp_path / "features.png")
+    groups_at = np.arange(len(plotting.NAMES)) + plotting.BAR  # the last force's
+    for mark in marked(figure, "unstable"):  # of C_nl and C_m
+        np.testing.assert_allclose(mark.get_xdata(), groups_at)
+    assert len(marked(figure)) == 2
+    words = said(figure)
+    needed = frames["features_greedy"].groupby("target")["needed"].first()
     for count in needed:
-        assert f"{count} signals\nkeep 95 %" in said
+        assert f"{count} signals\nkeep 95 %" in words
     assert_legible(figure)
-    assert "4×4 crosshatch (described setup)" in said and "verdicts" in said
+    assert "4×4 crosshatch (described setup)" in words and "verdicts" in words
     with pytest.raises(ValueError, match="no run of the published setup"):
-        plotting.draw(made, "published", tmp_path / "none.png")
+        plotting.draw(frames, "published", tmp_path / "none.png")
 
 
-def test_a_figure_whose_verdict_is_unstable_is_drawn(study, tmp_path, monkeypatch):
-    monkeypatch.setattr(plotting.style, "save", lambda *_: None)  # rendering takes seconds
-    made = dict(study[0])
-    made["features"] = made["features"].assign(verdict=made["features"]["force_N"] == 0.9)
-    made["features_greedy"] = made["unstable"]
-    figure = plotting.draw(made, "described", tmp_path / "features.png")
-    assert len(figure.findobj(lambda artist: artist.get_gid() == "unstable")) == 4
+def test_a_figure_whose_verdict_is_unstable_is_drawn(study, unsaved):
+    frames = study[0] | {"features_baselines": BASELINES}
+    frames["features"] = frames["features"].assign(verdict=frames["features"]["force_N"] == 0.9)
+    frames["features_greedy"] = frames["unstable"]
+    figure = plotting.draw(frames, "described", "unsaved")
+    places = [len(mark.get_xdata()) for mark in marked(figure)]
+    assert places == [len(plotting.NAMES)] * 2 + [1, 1]  # bars and curves, of C_nl and of C_m
+
+
+def test_bars_are_the_scores_of_the_chronological_split(study, unsaved):
+    given = study[0] | {"features_baselines": BASELINES}
+    figure = plotting.draw(given, "described", "unsaved")
+    scored = given["features"].query("split == 'chronological' and status == 'ok'")
+    for ax, name in zip(figure.subfigs[1].axes, ("c_nl", "c_m")):
+        bars = np.array([(bar.get_x() + plotting.BAR / 2, bar.get_height()) for bar in ax.patches])
+        expected = [
+            (place + shift, scored.query("force_N == @force and group == @group")[name].item())
+            for force, shift in ((0.1, -plotting.BAR), (0.2, 0.0))
+            for place, group in enumerate(plotting.NAMES)
+        ]
+        np.testing.assert_allclose(bars, expected, atol=1e-9)
+
+
+def test_the_curves_are_what_the_chosen_signals_keep(study, unsaved):
+    figure = plotting.draw(study[0] | {"features_baselines": BASELINES}, "described", "unsaved")
+    curves, _ = figure.subfigs[2].subfigs
+    for ax, target in zip(curves.axes, ("c_nl", "c_m")):
+        greedy = study[0]["features_greedy"]
+        rows = greedy[greedy["target"] == target]
+        (curve,) = (line for line in ax.lines if len(line.get_xdata()) == len(rows))
+        np.testing.assert_array_equal(curve.get_xydata(), rows[["n_chosen", "kept"]])
 
 
 def scores(changed=(), split="chronological", force=0.2):
@@ -158,8 +184,9 @@ def scores(changed=(), split="chronological", force=0.2):
 
 
 def judge(name, table):
-    row = claims.evaluate({"features": table}).set_index("id").loc[name]
-    return row["published"], row["published_verdict"]
+    rules = ["fiberweb.studies.features.claims"]
+    row = claims.evaluate({"features": table}, "published", rules).set_index("id").loc[name]
+    return row["value"], row["verdict"]
 
 
 @pytest.mark.parametrize("name", [f"F{number}" for number in range(1, 8)])

@@ -5,15 +5,15 @@ import pandas as pd
 import pytest
 import xarray as xr
 from matplotlib.collections import PolyCollection
-from matplotlib.text import Text
 
 from fiberweb import Scene, crosshatch
+from fiberweb.claims import judge as claims
 from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 from fiberweb.studies.narma import figure
 from fiberweb.studies.narma import task as narma
 from fiberweb.tables import read, write
-from tests.figures.legible import assert_legible
+from tests.figures.legible import assert_legible, assert_written, marked, said
 
 RATE = 50.0
 
@@ -44,7 +44,7 @@ def recording(n, duration=8.0, status="ok", name="run"):
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    """(found, table) of a stable and an unstable run."""
+    """(estimates, table) of a stable and an unstable run."""
     folder = tmp_path_factory.mktemp("narma")
     responses, capacities = [], []
     for n, status in ((2, "ok"), (3, "unstable")):
@@ -53,8 +53,8 @@ def study(tmp_path_factory):
         capacities.append(folder / f"{n}-capacity.nc")
         dataset.save(response, responses[-1])
         dataset.save(capacity.score(response), capacities[-1])
-    found = narma.of_runs(responses, narma.ORDERS, 10.0, 1.0)
-    return found, narma.table(found, capacities, ["eq3", "eq3"])
+    estimates = narma.of_runs(responses, narma.ORDERS, 10.0, 1.0)
+    return estimates, narma.table(estimates, capacities, ["eq3", "eq3"])
 
 
 # --- the recursions -----------------------------------------------------------------------------
@@ -145,7 +145,7 @@ def test_rate_must_divide_the_recordings():
 def test_estimates_are_ridge_on_standardised_readouts():
     """The normal equations, written out; next is the same series one sample on."""
     response = recording(3)
-    found = narma.estimates(response, (2, 10), 10.0, 1.0)
+    estimates = narma.estimates(response, (2, 10), 10.0, 1.0)
     u, x = capacity.signals(response)
     u, x = u[::5], x[::5].astype(float)
     train, test = np.arange(16, 64), np.arange(64, 80)  # 80 samples, a fifth of them dropped
@@ -155,22 +155,22 @@ def test_estimates_are_ridge_on_standardised_readouts():
         mean = z[train].mean()
         gram = x[train].T @ x[train] + np.eye(x.shape[1])
         weights = np.linalg.solve(gram, x[train].T @ (z[train] - mean))
-        one = found.sel(run="run", timing=timing, order=10)
+        one = estimates.sel(run="run", timing=timing, order=10)
         np.testing.assert_allclose(one["target"], z[test], rtol=1e-12)
         estimate = one["estimate"].sel(readout="network")
         np.testing.assert_allclose(estimate, x[test] @ weights + mean, rtol=1e-8)
-    np.testing.assert_allclose(found["time"], test / 10.0)
+    np.testing.assert_allclose(estimates["time"], test / 10.0)
 
 
 def test_table_holds_the_measures_of_the_errors(study):
-    found, table = study
+    estimates, table = study
     assert len(table) == 2 * 3 * 5 * 2
     assert list(table.columns[: len(tables.COLUMNS)]) == list(tables.COLUMNS)
     row = table[(table["n"] == 2) & (table["order"] == 5) & (table["timing"] == "same")]
     row = row.set_index("readout").loc["powers"]
     at = {"run": row["run"], "order": 5, "timing": "same"}
-    z = found["target"].sel(at).values
-    error = found["estimate"].sel(at | {"readout": "powers"}).values - z
+    z = estimates["target"].sel(at).values
+    error = estimates["estimate"].sel(at | {"readout": "powers"}).values - z
     assert row["rmse"] == pytest.approx(np.sqrt(np.mean(error**2)))
     assert row["nrmse"] == pytest.approx(np.sqrt(np.mean(error**2)) / np.std(z))
     assert row["bias"] == pytest.approx(np.mean(error))
@@ -191,28 +191,55 @@ def test_an_unstable_run_has_no_errors_but_its_input_has(study):
 # --- the figure ---------------------------------------------------------------------------------
 
 
-def test_figure_shows_every_readout_and_an_x_for_the_unstable(study, tmp_path):
-    found, table = study
-    made = figure.draw(table, found, "described", tmp_path / "narma.png")
-    assert (tmp_path / "narma.png").stat().st_size > 10_000 and (tmp_path / "narma.pdf").exists()
-    text = " ".join(t.get_text() for t in made.findobj(Text))
-    for words in ("NARMA-10", "2×2", "3×3", "ESN\n16", "unstable run", "2×2 network", "Bias"):
-        assert words in text
-    # three panels each of violins, RMSE, interdecile range and bias
-    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 12
-    violins = [body for body in made.findobj(PolyCollection) if len(body.get_paths())]
+@pytest.fixture(scope="module")
+def drawn(study, tmp_path_factory):
+    path = tmp_path_factory.mktemp("figures") / "narma.png"
+    given = {"narma_errors": study[0], "narma": study[1]}
+    return figure.draw(given, "described", path), path
+
+
+def test_figure_shows_every_readout_and_an_x_for_the_unstable(drawn):
+    picture, path = drawn
+    assert_written(path)
+    assert_legible(picture)
+    words = said(picture)
+    for word in ("NARMA-10", "2×2", "3×3", "ESN\n16", "unstable run", "2×2 network", "Bias"):
+        assert word in words
+    # three panels each of violins, RMSE, interdecile range and bias; the 3x3 is the second readout
+    assert [list(mark.get_xdata()) for mark in marked(picture)] == [[1]] * 12
+    violins = [body for body in picture.findobj(PolyCollection) if len(body.get_paths())]
     assert len(violins) == 3 * 6  # a network, two of echo states, and three of the input alone
-    assert_legible(made)
-    assert made.get_size_inches()[0] == pytest.approx(180 / 25.4)
 
 
-def test_figure_of_one_unstable_run_is_drawn(study, tmp_path):
-    found, table = study
+def test_bars_are_the_measures_of_the_table_in_thousandths(study, drawn):
+    columns = np.reshape(drawn[0].axes, (5, 3)).T
+    table = study[1][study[1]["timing"] == "same"]
+    for column, order in zip(columns, narma.ORDERS):
+        rows = table[(table["order"] == order)].set_index(["n", "readout"])
+        shown = [(2, "network"), (2, "echo_state"), (3, "echo_state")]
+        shown += [(2, name) for name in ("derivatives", "powers", "u")]
+        for ax, measure in zip(column[1:4], figure.MEASURES):
+            heights = [bar.get_height() for bar in ax.patches]
+            np.testing.assert_allclose(heights, 1e3 * rows.loc[shown, measure])
+
+
+def test_the_papers_errors_are_those_of_the_claims():
+    listed = {claim["id"]: claim.get("paper") for claim in claims.load()}
+    rmse = dict(zip(narma.ORDERS, (listed["N1"], listed["N2"], listed["N3"])))
+    for order, decile_range in zip(narma.ORDERS, listed["N4"]):
+        assert figure.PAPER[order] == {"rmse": rmse[order], "interdecile_range": decile_range}
+
+
+def test_figure_of_one_unstable_run_is_drawn(study, unsaved):
+    estimates, table = study
     alone = table[(table["status"] == "unstable") & (table["order"] == 2)]
-    made = figure.draw(alone, found, "described", tmp_path / "narma.png")
-    assert len(made.findobj(lambda artist: artist.get_gid() == "unstable")) == 5
+    given = {"narma": alone, "narma_errors": estimates}
+    picture = figure.draw(given, "described", "unsaved")
+    *bars, trace = marked(picture)
+    assert [list(mark.get_xdata()) for mark in bars] == [[0]] * 4
+    assert trace.axes.get_xlabel() == "Time (s)"
     with pytest.raises(ValueError, match="no run of the published setup"):
-        figure.draw(alone, found, "published", tmp_path / "none.png")
+        figure.draw(given, "published", "unsaved")
 
 
 def test_table_reads_back(study, tmp_path):

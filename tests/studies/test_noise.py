@@ -10,7 +10,7 @@ from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 from fiberweb.studies.noise import figure as plotting
 from fiberweb.studies.noise import tables as noise
-from tests.figures.legible import assert_legible
+from tests.figures.legible import assert_legible, assert_written, marked
 
 RATE = 50.0
 LEVELS = [1e-6, 1e-4]
@@ -111,10 +111,19 @@ def test_the_figure_shows_both_totals_and_refuses_a_setup_without_runs(table, tm
     baselines = pd.DataFrame({"readout": ["u", "powers"], "c_nl": [0.1, 0.4], "c_m": [0.1, 0.1]})
     given = {"noise": table, "noise_baselines": baselines}
     figure = plotting.draw(given, "described", tmp_path / "noise.png")
-    assert (tmp_path / "noise.png").exists() and (tmp_path / "noise.pdf").exists()
-    assert len(figure.axes) == 2
+    assert_written(tmp_path / "noise.png")
     assert_legible(figure)
-    marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
-    assert len(marks) == 2
+    assert [list(mark.get_xdata()) for mark in marked(figure)] == [[0.1], [0.1]]  # where none is
+    rows = table[table["status"] == "ok"]
+    for ax, name in zip(figure.axes, ("c_nl", "c_m"), strict=True):
+        noisy, free = ax.containers
+        means = rows[rows["noise_m"] > 0].groupby("noise_m")[name].mean()
+        expected = np.transpose([1e6 * np.array(LEVELS), means])
+        np.testing.assert_allclose(noisy[0].get_xydata(), expected)
+        np.testing.assert_allclose(free[0].get_xydata(), [(0.1, rows[name].iloc[0])])
+        errors = rows.groupby("noise_m")[[name, f"{name}_se"]].agg(["mean", "std"])
+        spread = np.hypot(errors[f"{name}_se", "mean"], errors[name, "std"])[LEVELS]
+        bars = np.array(noisy.lines[2][0].get_segments())[:, :, 1]
+        np.testing.assert_allclose(np.ptp(bars, axis=1), 2 * spread)
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(given, "published", tmp_path / "none.png")

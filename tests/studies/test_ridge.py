@@ -3,7 +3,6 @@
 import numpy as np
 import pandas as pd
 import pytest
-
 from matplotlib.lines import Line2D
 
 from fiberweb.claims import judge as claims
@@ -13,7 +12,6 @@ from fiberweb.studies.ridge.onset import COLUMNS, onsets
 from fiberweb.tables import write
 from tests.figures.legible import BASELINES, marked, said
 from tests.studies.sweeps import FORCES, SPACINGS, ridge_tables
-
 
 # --- the onset: between the two neighbouring B where C_nl falls most ---
 

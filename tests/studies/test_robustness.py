@@ -10,7 +10,7 @@ from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 from fiberweb.studies.robustness import figure as plotting
 from fiberweb.studies.robustness import tables as robustness
-from tests.figures.legible import assert_legible
+from tests.figures.legible import assert_legible, assert_written, marked, said
 
 ALPHAS = [1e-3, 1.0, 100.0]
 
@@ -75,14 +75,26 @@ def test_the_figure_gives_the_spread_of_seeds_beside_their_errors(alphas, tmp_pa
         "robustness_baselines": baselines,
     }
     figure = plotting.draw(given, "described", tmp_path / "robustness.png")
-    said = " ".join(text.get_text() for ax in figure.axes for text in ax.texts)
-    assert "sd 0.020, se 0.013" in said and "sd 0.020, se 0.017" in said
+    words = said(figure)
+    assert "sd 0.020, se 0.013" in words and "sd 0.020, se 0.017" in words
+    assert_written(tmp_path / "robustness.png")
     assert_legible(figure)
-    marks = figure.findobj(lambda artist: artist.get_gid() == "unstable" and artist.get_xdata())
+    marks = [mark for mark in marked(figure) if mark.get_xdata()]
     assert [list(mark.get_xdata()) for mark in marks] == [[2], [2]]
+    for ax, error in zip(figure.subfigs[0].axes, (0.013, 0.017)):
+        four = ax.containers[0]
+        np.testing.assert_allclose(four[0].get_xydata(), list(enumerate(c)))
+        bars = np.array(four.lines[2][0].get_segments())[:, :, 1]
+        np.testing.assert_allclose(np.ptp(bars, axis=1), 2 * error)
+        means = [tuple(one[0].get_xydata()[0]) for one in ax.containers[2:]]
+        assert means == [(3, pytest.approx(0.71)), (3, pytest.approx(0.72))]  # of 8x8, of 4x4
+    for ax, name in zip(figure.subfigs[1].axes, ("c_nl", "c_m")):
+        training, (test, *_) = ax.lines[0], ax.containers[0]
+        np.testing.assert_allclose(training.get_xydata(), alphas[["alpha", f"{name}_train"]])
+        np.testing.assert_allclose(test.get_xydata(), alphas[["alpha", name]])
     given["robustness"] = seeds[seeds["seed"] == 2]
     alone = plotting.draw(given, "described", tmp_path / "alone.png")
-    said = [text.get_text() for ax in alone.axes for text in ax.texts]
-    assert "se 0.013" in said and not any("nan" in text for text in said)
+    words = [text.get_text() for ax in alone.axes for text in ax.texts]
+    assert "se 0.013" in words and not any("nan" in text for text in words)
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(given, "published", tmp_path / "none.png")

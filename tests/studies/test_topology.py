@@ -1,5 +1,6 @@
 """Fig. 1 from synthetic tables: what it draws, its files and bytes, the X of an unstable run."""
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,7 +8,7 @@ import xarray as xr
 from numpy.polynomial.legendre import legvander
 
 from fiberweb import Scene, crosshatch
-from fiberweb.figures import panels, plots
+from fiberweb.figures import plots
 from fiberweb.model.drive import spline
 from fiberweb.studies.topology import figure as topology
 from tests.figures.legible import BASELINES, assert_legible, assert_written, marked, said
@@ -22,7 +23,7 @@ def networks():
 
 @pytest.fixture(scope="module")
 def data():
-    """(table, curves, baselines, traces) with a 10x10 crosshatch that was unstable."""
+    """What the figure is given, with a 10x10 crosshatch that was unstable."""
     rows, curves = [], []
     order, lag = np.arange(1.0, 11.0), np.arange(0, 251, 10) / 250
     for setup, kind, n in networks():
@@ -37,14 +38,12 @@ def data():
         for target, places, values in (("order", order, c_order), ("lag", lag, c_lag)):
             points = zip(places, values, strict=True)
             curves += [key | {"target": target, "at": at, "c": c} for at, c in points]
-    baselines = pd.DataFrame(
-        {
-            "readout": ["u", "derivatives", "powers"],
-            "c_nl": [0.14, 0.14, 0.41],
-            "c_m": [0.09, 0.28, 0.09],
-        }
-    )
-    return pd.DataFrame(rows), pd.DataFrame(curves), baselines, example_traces()
+    return {
+        "topology": pd.DataFrame(rows),
+        "topology_curves": pd.DataFrame(curves),
+        "topology_baselines": BASELINES,
+        "topology_traces": example_traces(),
+    }
 
 
 def example_traces():
@@ -65,40 +64,58 @@ def example_traces():
     )
 
 
-def png_size(path):
-    """Width and height in pixels, from the file's header."""
-    header = path.read_bytes()[:24]
-    assert header[:8] == b"\x89PNG\r\n\x1a\n"
-    return int.from_bytes(header[16:20]), int.from_bytes(header[20:24])
+def some(data, chosen):
+    """The same of those rows alone that are chosen, and without traces, as of an unstable run."""
+    tables = {name: data[name][chosen(data[name])] for name in ("topology", "topology_curves")}
+    return data | tables | {"topology_traces": data["topology_traces"][[]]}
 
 
 @pytest.fixture(scope="module")
 def drawn(data, tmp_path_factory):
     path = tmp_path_factory.mktemp("figures") / "topology.png"
-    return topology.draw(*data, "described", path), path
+    return topology.draw(data, "described", path), path
 
 
-def test_the_figure_is_a_double_column_at_300_dpi(drawn):
-    _, path = drawn
-    width, height = png_size(path)
-    assert width == pytest.approx(180 / 25.4 * 300, abs=1)
-    assert height < 240 / 25.4 * 300  # fits a page with its caption
-    assert path.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
+def test_the_figure_is_a_double_column_that_fits_a_page_with_its_caption(drawn):
+    assert_written(drawn[1])
+    assert 25.4 * drawn[0].get_figheight() < 240
 
 
 def test_the_same_data_give_the_same_bytes(data, drawn, tmp_path):
     _, path = drawn
-    topology.draw(*data, "described", tmp_path / "topology.png")
+    topology.draw(data, "described", tmp_path / "topology.png")
     for suffix in (".png", ".pdf"):
         again = (tmp_path / "topology.png").with_suffix(suffix)
         assert again.read_bytes() == path.with_suffix(suffix).read_bytes()
 
 
+@pytest.mark.parametrize(("row", "kind"), [(1, "crosshatch"), (2, "polygon")])
+def test_curves_and_totals_are_the_tables(data, drawn, row, kind):
+    by_order, by_lag, *totals = drawn[0].subfigs[row].axes[:4]
+    table, curves = (
+        frame[(frame["setup"] == "described") & (frame["topology"] == kind)].dropna()
+        for frame in (data["topology"], data["topology_curves"])
+    )
+    for ax, target in ((by_order, "order"), (by_lag, "lag")):
+        expected = [
+            frame[["at", "c"]].to_numpy()
+            for _, frame in curves[curves["target"] == target].groupby("n")
+        ]
+        np.testing.assert_array_equal([line.get_xydata() for line in ax.lines], expected)
+    for ax, (name, symbol) in zip(totals, plots.TOTALS.items()):
+        assert ax.get_ylabel() == symbol
+        joined, training = ax.lines[:2]
+        np.testing.assert_array_equal(joined.get_xydata(), table[["n", name]])
+        np.testing.assert_array_equal(training.get_xydata(), table[["n", f"{name}_train"]])
+        bars = [bar.lines[2][0].get_segments()[0][:, 1] for bar in ax.containers]
+        c, error = table[name], table[f"{name}_se"]
+        np.testing.assert_allclose(bars, np.transpose([c - error, c + error]))
+
+
 def test_an_unstable_run_is_an_x_in_both_totals(drawn):
-    figure, _ = drawn
-    marks = figure.findobj(lambda artist: artist.get_gid() == "unstable")
+    marks = marked(drawn[0])
     assert [(list(mark.get_xdata()), mark.get_marker()) for mark in marks] == [([10], "X")] * 2
-    assert "unstable run" in said(figure)
+    assert "unstable run" in said(drawn[0])
 
 
 def test_no_text_overlaps_and_none_is_too_small(drawn):
@@ -106,55 +123,68 @@ def test_no_text_overlaps_and_none_is_too_small(drawn):
 
 
 def test_panels_are_lettered_in_order_and_name_what_they_show(drawn):
-    said = said(drawn[0])
-    for words in (
-        "Networks (described",
-        "Polygonal networks (described",
-        "8×8 crosshatch (described",
-    ):
-        assert words in said
-    for letter in "abcd":
-        assert rf"$\mathbf{{{letter}}}$" in said
-    assert "$c$ = 0.999" in said and "$c$ = 0.700" in said
+    words = said(drawn[0])
+    places = [
+        words.index(rf"$\mathbf{{{letter}}}$   {title} (described setup)")
+        for letter, title in zip(
+            "abcd",
+            (
+                "Networks",
+                "Crosshatch networks",
+                "Polygonal networks",
+                "Example computations, 8×8 crosshatch",
+            ),
+        )
+    ]
+    assert places == sorted(places)
+    assert "$c$ = 0.999" in words and "$c$ = 0.700" in words
 
 
-def test_without_traces_the_last_panel_is_left_out(data, drawn, tmp_path):
-    table, curves, baselines, traces = data
+def test_traces_are_target_and_prediction(data, drawn):
+    traces = data["topology_traces"]
+    axes = drawn[0].subfigs[-1].axes
+    shown = [ax for ax in axes if "P_{7}" in ax.get_title()]
+    prediction, target = shown[0].lines
+    one = traces.sel(trace="P7", time=target.get_xdata())
+    np.testing.assert_array_equal(target.get_ydata(), one["target"])
+    np.testing.assert_array_equal(prediction.get_ydata(), one["prediction"])
+    known = traces["time"].values[20:]  # where every target begins
+    assert target.get_xdata()[0] == known[0]
+    assert np.ptp(target.get_xdata()) == pytest.approx(topology.TRACE_SECONDS, abs=0.03)
+
+
+def test_without_traces_the_last_panel_is_left_out(data, drawn, unsaved):
+    traces = data["topology_traces"]
     unknown = traces.assign(prediction=traces["prediction"] * np.nan)
-    for number, nothing in enumerate((None, unknown)):
-        path = tmp_path / f"{number}.png"
-        figure = topology.draw(table, curves, baselines, nothing, "described", path)
+    for nothing in (traces[[]], unknown):
+        figure = topology.draw(data | {"topology_traces": nothing}, "described", "unsaved")
         assert "Example computations" not in said(figure)
-        assert png_size(path)[1] < png_size(drawn[1])[1]
+        assert figure.get_figheight() < drawn[0].get_figheight()
 
 
 @pytest.mark.parametrize("kind", ["crosshatch", "polygon"])
-def test_a_study_of_few_networks_is_drawn(data, tmp_path, kind):
-    table, curves, _, _ = data
-    few = [frame[(frame["topology"] == kind) & (frame["n"] <= 6)] for frame in (table, curves)]
-    figure = topology.draw(*few, None, None, "published", tmp_path / "few.png")
+def test_a_study_of_few_networks_is_drawn(data, unsaved, kind):
+    few = some(data, lambda frame: (frame["topology"] == kind) & (frame["n"] <= 6))
+    figure = topology.draw(few, "published", "unsaved")
     assert ("Polygonal" in said(figure)) == (kind == "polygon")
-    assert not figure.findobj(lambda artist: artist.get_gid() == "unstable")
+    assert ("Crosshatch" in said(figure)) == (kind == "crosshatch")
+    assert not marked(figure)
 
 
-def test_a_study_in_which_nothing_was_stable_is_drawn(data, tmp_path):
-    table, curves, baselines, _ = data
-    table, curves = (frame[frame["n"] == 10] for frame in (table, curves))
-    table, curves = (frame[frame["topology"] == "crosshatch"] for frame in (table, curves))
-    figure = topology.draw(table, curves, baselines, None, "described", tmp_path / "x.png")
-    assert len(figure.findobj(lambda artist: artist.get_gid() == "unstable")) == 2
+def test_a_study_in_which_nothing_was_stable_is_drawn(data, unsaved):
+    lost = some(data, lambda frame: (frame["topology"] == "crosshatch") & (frame["n"] == 10))
+    figure = topology.draw(lost, "described", "unsaved")
+    assert [list(mark.get_xdata()) for mark in marked(figure)] == [[10], [10]]
 
 
-def test_a_setup_without_runs_is_refused(data, tmp_path):
-    table, curves, baselines, _ = data
-    table = table[table["setup"] == "described"]
+def test_a_setup_without_runs_is_refused(data, unsaved):
+    described = some(data, lambda frame: frame["setup"] == "described")
     with pytest.raises(ValueError, match="no run of the published setup"):
-        topology.draw(table, curves, baselines, None, "published", tmp_path / "none.png")
+        topology.draw(described, "published", "unsaved")
 
 
 def test_drawing_leaves_matplotlib_as_it_was(data, tmp_path):
-    import matplotlib as mpl
-
     before = dict(mpl.rcParams)
-    topology.draw(*data[:3], None, "described", tmp_path / "a.png")
+    crosshatches = some(data, lambda frame: frame["topology"] == "crosshatch")
+    topology.draw(crosshatches, "described", tmp_path / "a.png")
     assert dict(mpl.rcParams) == before

@@ -18,9 +18,9 @@ OLD = [
 
 def table(rows, **more):
     """A study's table before (or after) a change; the run's name and the step differ anyhow."""
-    made = pd.DataFrame(rows, columns=["n", "force_N", "c_nl", "c_m", "status"])
-    made = made.assign(setup="described", run=f"run-{np.random.default_rng().random()}")
-    return made.assign(**{"time_step_s": 1e-5, "elements_per_section": 4} | more)
+    frame = pd.DataFrame(rows, columns=["n", "force_N", "c_nl", "c_m", "status"])
+    frame = frame.assign(setup="described", run=f"run-{np.random.default_rng().random()}")
+    return frame.assign(**{"time_step_s": 1e-5, "elements_per_section": 4} | more)
 
 
 def changed(at, **values):
@@ -87,7 +87,7 @@ def test_an_empty_cell_changes_no_design_point(tmp_path):
     old, new = table(OLD, noise_seed=[0, 1, 2]), table(OLD[:2], noise_seed=[0, 1])
     old = pd.concat([old, table([OLD[0]], noise_seed=np.nan)])
     assert code(tmp_path, old, new) == 0
-    assert set(compare.match(old, new)[0]["found"]) == {"both", "old"}
+    assert set(compare.match(old, new)[0]["side"]) == {"both", "old"}
 
 
 def test_meshes_of_one_point_are_compared_in_their_order(tmp_path):

@@ -1,21 +1,6 @@
 # The paper's claims: judged in each setup by its tables, and side by side.
 
 
-def claims_tables(wildcards):
-    """The tables that the rules of the claims read, of the studies that the setup runs."""
-    return [
-        table(file, wildcards.setup)
-        for study in studies.STUDIES
-        if wildcards.setup in studies.setups(study)
-        for file in getattr(studies.load(study), "JUDGED_BY", ())
-    ]
-
-
-def authors_tables(wildcards):
-    folder = CONFIG.published_tables
-    return sorted(glob(f"{folder}/*.csv")) if folder else []
-
-
 rule setup_claims:
     input:
         code=code("fiberweb.claims.judge", *studies.claims()),

@@ -20,7 +20,7 @@ SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 def code(*names):
     """A file with the digest of the code that modules or functions depend on.
 
-    As an input it reruns a rule when that code has changed: not by a touch, nor by a comment.
+    As an input it reruns what uses that code when it changed, and not for a touch or a comment.
     """
     path = Path(RESULTS, "code", "+".join(names).replace(":", "."))
     digest = source.digest(*names) + "\n"

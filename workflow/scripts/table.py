@@ -10,7 +10,8 @@ given = dict(params.options)
 if capacities := source.get("capacities"):
     given["capacity_paths"] = list(capacities)
 if responses := source.get("responses"):
-    given |= {"response_path": responses[0]} if params.single else {"response_paths": list(responses)}
+    single = {"response_path": responses[0]}
+    given |= single if params.single else {"response_paths": list(responses)}
 tables = source.tables if isinstance(source.tables, list) else [source.tables]
 print(params.make, *map(str, tables))
 made = products.function(params.make)(*map(products.read, tables), **given)

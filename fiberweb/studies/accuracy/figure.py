@@ -210,6 +210,8 @@ def _agreement(ax: Axes, table: pd.DataFrame) -> None:
             color=COLOUR[engine], mfc="none", mew=0.8,
         )  # fmt: skip
     ax.set(xscale="log", yscale="log", xlabel="Predicted limit (µs)", ylabel="Found (µs)")
+    plots.logarithmic(ax.xaxis)
+    plots.logarithmic(ax.yaxis)
     ax.set_title("All points", loc="left")
 
 
@@ -232,6 +234,7 @@ def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) 
         ax.plot(x[bad], 1e6 * rows.loc[bad, "predicted_s"], **style.UNSTABLE)
     ax.set(yscale="log", xscale="log", xlabel=label, ylabel="Limit (µs)")
     ax.set_ylim(0.5e6 * table[["predicted_s", measured]].min().min(), 2e6 * table["found_s"].max())
+    plots.logarithmic(ax.yaxis)
     if column == "tension_N":
         ax.set_xscale("symlog", linthresh=0.1)
         ax.set_xlim(left=-0.02)
@@ -240,6 +243,8 @@ def _sweep(ax: Axes, table: pd.DataFrame, column: str, label: str, unit: float) 
     if column in ticks:
         ax.set_xticks(ticks[column], [f"{tick:g}" for tick in ticks[column]])
         ax.minorticks_off()
+    else:
+        plots.logarithmic(ax.xaxis)
 
 
 def _ratios(ax: Axes, table: pd.DataFrame, engine: str) -> None:
@@ -256,4 +261,4 @@ def _ratios(ax: Axes, table: pd.DataFrame, engine: str) -> None:
 
 def _drift(ax: Axes, drift: pd.DataFrame) -> None:
     for steps, change in zip(drift["steps"], drift["drift"]):
-        ax.set_title(f"Energy drift {change:.0e} in {steps:.0e} steps", loc="left")
+        ax.set_title(f"Drift {change:.0e} in {steps:.0e} steps", loc="left")

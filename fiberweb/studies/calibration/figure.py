@@ -19,7 +19,7 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
 from fiberweb.figures import panels, plots, style
-from fiberweb.studies.calibration.tables import GRID, SIZE
+from fiberweb.studies.calibration.grid import GRID, SIZE
 
 K, NU, GAMMA = GRID
 SHOWN = 6  # best points in panel b

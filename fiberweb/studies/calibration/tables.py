@@ -19,12 +19,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from fiberweb.claims import judge
+from fiberweb.claims import listed
 from fiberweb.model.scene import SETUPS
 from fiberweb.scoring import tables
+from fiberweb.studies.calibration.grid import GRID, SIZE
 from fiberweb.tables import read
 
-SIZE = 8  # N of the crosshatch of Fig. 1d
 # column: claim, and where its capacity is: Legendre order, or lag in s
 TARGETS = {
     "c_p4": ("T1", "order", 4),
@@ -33,12 +33,6 @@ TARGETS = {
     "recall_400ms": ("T4", "lag", 0.4),
 }
 VARIABLES = {"order": "nonlinear", "lag": "memory"}
-# columns of the grid's axes, and the fields of a scene that they are
-GRID = {
-    "crossing_stiffness_N_m": "crossing_stiffness",
-    "crossing_damping_Ns_m": "crossing_damping",
-    "damping_per_s": "damping",
-}
 DEFAULTS = SETUPS["described", "crosshatch"]
 CHECK_COLUMNS = ("setup", "role", *GRID, *TARGETS, "misfit")
 DIGITS = 2  # of a misfit; points that agree in these are a tie
@@ -48,9 +42,9 @@ NONE_STABLE = "the calibration table has no stable run of the 8x8 crosshatch to 
 @cache
 def paper() -> dict[str, tuple[float, float]]:
     """The paper's capacity and our tolerance, dimensionless, of each column of `TARGETS`."""
-    listed = {claim["id"]: claim for claim in judge.load()}
+    claims = {claim["id"]: claim for claim in listed.load()}
     return {
-        column: (listed[name]["paper"], listed[name]["tolerance"])
+        column: (claims[name]["paper"], claims[name]["tolerance"])
         for column, (name, _, _) in TARGETS.items()
     }
 

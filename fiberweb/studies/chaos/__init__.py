@@ -19,7 +19,7 @@ from fiberweb.studies.base import (
 
 
 class ChaosSection(Section):
-    """Divergence of twin runs about buckling."""
+    """Divergence of perturbed pairs of runs about buckling."""
 
     n: Size = key(4, "size of the crosshatch, N")
     spacing: Positive = key(0.1, "spacing", "m")
@@ -28,7 +28,7 @@ class ChaosSection(Section):
         "buckling numbers of the force",
     )
     disturbance: Positive = key(
-        1e-9, "by how much the driven points of twins differ at the start", "m"
+        1e-9, "by how much the driven points of a perturbed pair differ at the start", "m"
     )
 
 

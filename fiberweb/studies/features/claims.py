@@ -23,7 +23,7 @@ from fiberweb.claims.judge import (
 # in a capacity: the most by which a group is "slightly" better or worse; our own choice, three
 # allowances
 SLIGHT = 0.1
-THIRD_TOLERANCE = 0.05  # of all outputs
+THIRD_TOLERANCE = 0.05  # of all outputs; our own choice
 CROSSINGS = ("crossing_x", "crossing_y")
 LATERAL = ("horizontal_midpoint_y", "vertical_midpoint_x")
 MIDPOINTS = ("horizontal_midpoint_x", "vertical_midpoint_y", *LATERAL)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from itertools import product
 
+from fiberweb.model.authors import ELEMENT, STEP
 from fiberweb.model.network import Network
 from fiberweb.model.scene import SETUPS as OF_SETUPS
 from fiberweb.sections import NotNegative, Positive, PositiveOrPinned, Section, Size, Some, key
@@ -29,12 +30,12 @@ class MemoryOriginSection(Section):
         [1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0], "rates of velocity damping", "1/s"
     )
     filter_element: Some[Positive] = key(
-        [0.01, 0.02, 0.005],
+        [ELEMENT, 2 * ELEMENT, ELEMENT / 2],
         "lengths of the elements of runs with the Laplace filter, and of the same without",
         "m",
     )
     filter_step: Some[Positive] = key(
-        [5e-6, 2.5e-6], "steps with it: the first on every mesh, others on the first", "s"
+        [STEP, STEP / 2], "steps with it: the first on every mesh, others on the first", "s"
     )
 
 

@@ -41,10 +41,10 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
             (`traces.example_traces`), which leaves panel d out if it has nothing or nothing but
             NaN.
     """
-    table = plots.rows_of(given["topology"], "topology", setup)
-    curves, baselines, traces = (
-        given[f"topology_{name}"] for name in ("curves", "baselines", "traces")
+    table, curves = (
+        plots.rows_of(given[name], name, setup) for name in ("topology", "topology_curves")
     )
+    baselines, traces = given["topology_baselines"], given["topology_traces"]
     if not traces.data_vars or not _known(traces).any():
         traces = None  # an unstable run has no prediction to show
     present = [name for name in TITLES if (table["topology"] == name).any()]
@@ -60,7 +60,7 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
             style.letter(row, next(letters), f"{TITLES[topology]} ({setup} setup)")
             runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
             _capacities(row, runs, points, baselines, colour)
-        panels.key_beside_title(rows[1], _marks(table, baselines))
+        panels.key_beside_title(rows[1], _marks(table))
         if traces is not None:
             title = f"Example computations{_network_name(traces)} ({setup} setup)"
             style.letter(rows[-1], next(letters), title)
@@ -125,7 +125,7 @@ def _capacities(
     part: SubFigure,
     runs: pd.DataFrame,
     points: pd.DataFrame,
-    baselines: pd.DataFrame | None,
+    baselines: pd.DataFrame,
     colour: dict,
 ) -> None:
     """c over order and over lag for each N, then the totals over N."""
@@ -149,21 +149,17 @@ def _capacities(
         ax.set(xlabel="$N$", ylabel=symbol, xticks=sizes)
     for ax in (by_order, by_lag, nonlinear, memory):
         ax.set_ylim(*CAPACITY_AXIS)
-    if baselines is not None:
-        for ax, name in zip((nonlinear, memory), plots.TOTALS, strict=True):
-            plots.baselines(ax, baselines, name)
+    for ax, name in zip((nonlinear, memory), plots.TOTALS, strict=True):
+        plots.baselines(ax, baselines, name)
 
 
-def _marks(table: pd.DataFrame, baselines: pd.DataFrame | None) -> dict[str, Line2D]:
+def _marks(table: pd.DataFrame) -> dict[str, Line2D]:
     """Legend entries of the totals."""
     handles = {
         "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
         "training": Line2D([], [], **TRAINING),
     }
-    entries = panels.baseline_and_unstable((table["status"] == "unstable").any())
-    if baselines is None:
-        del entries[plots.INPUT_ALONE]
-    return handles | entries
+    return handles | panels.baseline_and_unstable((table["status"] == "unstable").any())
 
 
 def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:

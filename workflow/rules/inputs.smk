@@ -1,0 +1,59 @@
+# What the rules of studies and claims take as input and parameters, by what `fiberweb.studies` says.
+
+
+def table_spec(wildcards):
+    """(the section, the `Table`, the runs that it is made of)"""
+    study = TABLES[wildcards.table]
+    section, spec = getattr(CONFIG, study), studies.load(study).TABLES[wildcards.table]
+    return section, spec, spec.runs(study_runs(study, wildcards.setup), section)
+
+
+def table_input(wildcards):
+    _, spec, chosen = table_spec(wildcards)
+    files = {"code": code(spec.make, "fiberweb.products")}
+    files["tables"] = [table(file, wildcards.setup) for file in spec.tables]
+    files["capacities"] = [capacity(run) for run in chosen] if spec.capacities else []
+    files["responses"] = [response(run) for run in chosen] if spec.responses else []
+    return files
+
+
+def table_options(wildcards):
+    section, spec, chosen = table_spec(wildcards)
+    choices = {"choices": [run.choice for run in chosen]} if spec.choices else {}
+    return spec.options(section, chosen) | choices
+
+
+def figure_spec(wildcards):
+    study = FIGURES[wildcards.figure]
+    return study, studies.load(study).FIGURES[wildcards.figure]
+
+
+def caption(study, spec, setup):
+    """What the report says beneath a figure."""
+    text = Path(studies.load(study).__file__).with_name(spec.caption).read_text()
+    return text.replace("{{ setup }}", setup)
+
+
+def figure_input(wildcards):
+    study, spec = figure_spec(wildcards)
+    setup = SETUP_OF[wildcards.suffix]
+    return {
+        "code": code(spec.draw, "fiberweb.products"),
+        "given": [table(file, setup) for file in spec.given],
+        "responses": [response(run) for run in study_runs(study, setup)] if spec.responses else [],
+    }
+
+
+def claims_tables(wildcards):
+    """The tables that the rules of the claims read, of the studies that the setup runs."""
+    return [
+        table(file, wildcards.setup)
+        for study in studies.STUDIES
+        if wildcards.setup in studies.setups(study)
+        for file in getattr(studies.load(study), "JUDGED_BY", ())
+    ]
+
+
+def authors_tables(wildcards):
+    folder = CONFIG.published_tables
+    return sorted(glob(f"{folder}/*.csv")) if folder else []
