@@ -35,7 +35,7 @@ docs: $(STAMP) ## the tables of numbers in docs/, from results/tables
 accuracy: $(STAMP) ## error against cost, the model ladder and the limits of the step
 	$(SNAKEMAKE) accuracy --cores $(CORES)
 
-smoke: $(STAMP) ## every figure from small, short runs, under two minutes
+smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 	$(SNAKEMAKE) figures --cores $(CORES) --configfile config/smoke.yaml
 
 test: $(STAMP) ## the tests

@@ -6,8 +6,10 @@ from difflib import get_close_matches
 
 
 def unknown_key(key: str, known, where: str = "") -> str:
-    """The sentence for a key that does not exist, with the nearest one that does."""
-    near = get_close_matches(str(key), [str(k) for k in known], n=1, cutoff=0.0)
+    """The sentence for a key that does not exist, with the nearest one that does, or all."""
+    near = get_close_matches(str(key), [str(k) for k in known], n=1)
+    if not near:
+        return f"unknown key '{where}{key}': the valid keys are {', '.join(map(str, known))}"
     return f"unknown key '{where}{key}': the nearest valid key is '{where}{near[0]}'"
 
 

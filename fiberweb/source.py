@@ -26,16 +26,17 @@ def source_hash() -> str:
     return digest(RUN)[:12]
 
 
-def digest(*names: str) -> str:
+def digest(*names: str, script: str | Path | None = None) -> str:
     """SHA-256 of the code of modules and of all that they import, as hexadecimal digits.
 
     Args:
         names: of modules, or of functions as in "fiberweb.scoring.tables:study".
+        script: a file whose own code counts as well, but not what it imports.
 
     Raises:
         ValueError: there is no such module.
     """
-    total = hashlib.sha256()
+    total = hashlib.sha256(_read(Path(script))[1].encode() if script else b"")
     for path in sorted(files(*names)):
         total.update(f"{path.relative_to(ROOT)} {_read(path)[1]}\n".encode())
     return total.hexdigest()

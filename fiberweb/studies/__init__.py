@@ -32,6 +32,21 @@ def setups(name: str) -> tuple[str, ...]:
     return getattr(load(name), "SETUPS", ("described", "published"))
 
 
+def makers(kind: str) -> dict[str, str]:
+    """Which study makes each of the "TABLES" or "FIGURES".
+
+    Raises:
+        ValueError: two studies make files of one name.
+    """
+    by_name: dict[str, str] = {}
+    for study in STUDIES:
+        for name in getattr(load(study), kind):
+            if name in by_name:
+                raise ValueError(f"{name} is made by two studies, {by_name[name]} and {study}")
+            by_name[name] = study
+    return by_name
+
+
 def claims() -> list[str]:
     """Names of the modules with rules of claims."""
     judged = [name for name in STUDIES if hasattr(load(name), "JUDGED_BY")]

@@ -1,7 +1,7 @@
-"""`python -m fiberweb.tools.bench_passes`: cost of each pass of the planar kernels, beside a floor.
+"""`python -m fiberweb.tools.bench_passes`: cost of each pass of the planar kernels, and the least.
 
 ns per element, the minimum of several repeats, over chains of several lengths; in brackets the
-floor on this machine: what as many loads and stores cost in a loop that only adds (measured),
+least on this machine: what as many loads and stores cost in a loop that only adds (measured),
 or as many square roots and divisions (measured), whichever is more.
 """
 
@@ -89,13 +89,13 @@ def main() -> None:
             row = []
             for size in SIZES:
                 cost = _time(function, (*_arrays(size, count), *scalars), size)
-                row.append((cost, floor(unit[size], *counts)))
+                row.append((cost, least(unit[size], *counts)))
             total += np.array(row)
             print(f"  {name:<32}" + "".join(f"{a:>10.2f} ({b:4.2f})" for a, b in row))
         print(f"  {'sum':<32}" + "".join(f"{a:>10.2f} ({b:4.2f})" for a, b in total) + "\n")
 
 
-def floor(unit, loads: int, stores: int, roots: int, divisions: int) -> float:
+def least(unit, loads: int, stores: int, roots: int, divisions: int) -> float:
     """ns per element of the memory traffic, or of roots and divisions, whichever is more."""
     load, store, root_time, divide_time = unit
     return max(loads * load + stores * store, roots * root_time + divisions * divide_time)

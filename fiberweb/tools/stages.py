@@ -1,7 +1,7 @@
 """`python -m fiberweb.tools.stages [results]`: jobs and time of each stage of the workflow.
 
 From the benchmark files that Snakemake leaves: one for each job, the last time that it ran.
-Stages are folders there: simulate, capacity, and one for each study's tables and figures.
+Stages are folders there: simulate, capacity, tables, figures, claims, accuracy.
 """
 
 from __future__ import annotations

@@ -147,3 +147,9 @@ def test_every_block_of_the_pages_is_known_and_ends(tmp_path):
         page = path.read_text()
         assert docs.rewrite(page, tmp_path)[0] == page
         assert len(docs.BLOCK.findall(page)) == len(re.findall(f"^{docs.START}", page, re.M))
+
+
+@pytest.mark.parametrize("page", sorted(docs.DOCS.glob("*.md")), ids=lambda page: page.stem)
+def test_no_table_of_the_docs_is_empty(page):
+    for name, body in docs.BLOCK.findall(page.read_text(encoding="utf-8")):
+        assert len(body.strip().splitlines()) > 2, name

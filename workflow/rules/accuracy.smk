@@ -25,7 +25,7 @@ rule accuracy:
 
 rule exudyn:
     input:
-        code=code("fiberweb.validation.exudyn_check"),
+        code=code("exudyn_table", "fiberweb.validation.exudyn_check", "fiberweb.tables"),
         compiled="<results>/warmup.done",
     output:
         "<results>/tables/exudyn.csv",
@@ -43,7 +43,7 @@ rule exudyn:
 
 rule speed_accuracy:
     input:
-        code=code("fiberweb.validation.accuracy"),
+        code=code("speed_accuracy", "fiberweb.validation.accuracy", "fiberweb.tables"),
         compiled="<results>/warmup.done",
         exudyn=EXUDYN,
     output:
@@ -65,7 +65,12 @@ rule speed_accuracy:
 
 rule model_ladder:
     input:
-        code=code("fiberweb.validation.accuracy", "fiberweb.validation.limits"),
+        code=code(
+            "model_ladder",
+            "fiberweb.validation.accuracy",
+            "fiberweb.validation.limits",
+            "fiberweb.tables",
+        ),
         compiled="<results>/warmup.done",
     output:
         ladder="<results>/tables/model_ladder.csv",
@@ -88,7 +93,7 @@ rule model_ladder:
 
 rule stability:
     input:
-        code=code("fiberweb.validation.limits"),
+        code=code("stability", "fiberweb.validation.limits", "fiberweb.tables"),
         compiled="<results>/warmup.done",
     output:
         limits="<results>/tables/stability.csv",

@@ -9,7 +9,7 @@ FURTHER["buckling"] = ANIMATIONS
 
 rule animation:
     input:
-        code=code("fiberweb.studies.buckling.figure", "fiberweb.products"),
+        code=code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
         responses=lambda wildcards: [response(run) for run in study_runs("buckling", "described")],
     output:
         report(ANIMATIONS, caption="../report/figure.rst", category="Figures"),

@@ -3,7 +3,7 @@
 
 rule capacity:
     input:
-        code=code("fiberweb.scoring.capacity", "fiberweb.simulation.dataset"),
+        code=code("capacity", "fiberweb.scoring.capacity", "fiberweb.simulation.dataset"),
         response="<results>/runs/{run}/response.nc",
     output:
         "<results>/runs/{run}/capacity.nc",

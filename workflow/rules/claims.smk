@@ -3,7 +3,7 @@
 
 rule setup_claims:
     input:
-        code=code("fiberweb.claims.judge", *studies.claims()),
+        code=code("claims", "fiberweb.claims.judge", "fiberweb.products", *studies.claims()),
         tables=claims_tables,
         published=authors_tables,
     output:
@@ -31,7 +31,7 @@ rule setup_claims:
 
 rule claims:
     input:
-        code=code("fiberweb.claims.judge"),
+        code=code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
         claims=[f"<results>/tables/{setup}/claims.csv" for setup in SUFFIXES],
     output:
         report("<results>/tables/claims.csv", caption="../report/claims.rst", category="Claims"),

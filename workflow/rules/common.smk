@@ -1,10 +1,13 @@
 # The run table, and where things lie. Config errors end here, as one sentence each.
 
+import hashlib
 import os
 import sys
 from functools import cache
 from glob import glob
 from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
 
 from fiberweb import source, studies
 from fiberweb.config import check_folders, load
@@ -17,13 +20,14 @@ SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 
 
 @cache
-def code(*names):
-    """A file with the digest of the code that modules or functions depend on.
+def code(script, *names):
+    """A file with the digest of a script and of the code that modules or functions depend on.
 
     As an input it reruns what uses that code when it changed, and not for a touch or a comment.
     """
-    path = Path(RESULTS, "code", "+".join(names).replace(":", "."))
-    digest = source.digest(*names) + "\n"
+    asked = hashlib.sha256("+".join(names).encode()).hexdigest()[:8]
+    path = Path(RESULTS, "code", f"{script}-{asked}")
+    digest = source.digest(*names, script=Path(workflow.basedir, f"workflow/scripts/{script}.py"))
     if workflow.is_main_process and not (path.exists() and path.read_text() == digest):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(digest)
@@ -84,8 +88,8 @@ def products(setup):
 
 FURTHER = {}  # what rules of its own make of a study
 # which study makes a table or a figure
-TABLES = {file: study for study in studies.STUDIES for file in studies.load(study).TABLES}
-FIGURES = {name: study for study in studies.STUDIES for name in studies.load(study).FIGURES}
+TABLES = studies.makers("TABLES")
+FIGURES = studies.makers("FIGURES")
 
 try:
     CONFIG = load(config)

@@ -1,16 +1,23 @@
 # What the rules of studies and claims take as input and parameters, by what `fiberweb.studies` says.
 
 
+def made_in(study, setup):
+    """The study; one sentence if it does not run in the setup."""
+    if studies.setups(study) and setup not in studies.setups(study):
+        raise WorkflowError(f"the study {study} does not run in the {setup} setup")
+    return study
+
+
 def table_spec(wildcards):
     """(the section, the `Table`, the runs that it is made of)"""
-    study = TABLES[wildcards.table]
+    study = made_in(TABLES[wildcards.table], wildcards.setup)
     section, spec = getattr(CONFIG, study), studies.load(study).TABLES[wildcards.table]
     return section, spec, spec.runs(study_runs(study, wildcards.setup), section)
 
 
 def table_input(wildcards):
     _, spec, chosen = table_spec(wildcards)
-    files = {"code": code(spec.make, "fiberweb.products")}
+    files = {"code": code("table", spec.make, "fiberweb.products")}
     files["tables"] = [table(file, wildcards.setup) for file in spec.tables]
     files["capacities"] = [capacity(run) for run in chosen] if spec.capacities else []
     files["responses"] = [response(run) for run in chosen] if spec.responses else []
@@ -24,7 +31,7 @@ def table_options(wildcards):
 
 
 def figure_spec(wildcards):
-    study = FIGURES[wildcards.figure]
+    study = made_in(FIGURES[wildcards.figure], SETUP_OF[wildcards.suffix])
     return study, studies.load(study).FIGURES[wildcards.figure]
 
 
@@ -38,7 +45,7 @@ def figure_input(wildcards):
     study, spec = figure_spec(wildcards)
     setup = SETUP_OF[wildcards.suffix]
     return {
-        "code": code(spec.draw, "fiberweb.products"),
+        "code": code("figure", spec.draw, "fiberweb.products"),
         "given": [table(file, setup) for file in spec.given],
         "responses": [response(run) for run in study_runs(study, setup)] if spec.responses else [],
     }

@@ -3,7 +3,7 @@
 
 rule warmup:
     input:
-        code=code("fiberweb.engines"),
+        code=code("warmup", "fiberweb.engines"),
     output:
         touch("<results>/warmup.done"),
     log:
@@ -20,7 +20,7 @@ rule warmup:
 
 rule simulate:
     input:
-        code=code(source.RUN),
+        code=code("simulate", source.RUN, "fiberweb.simulation.dataset"),
         # not ancient(): where warmup has to run, Snakemake 9.27 then overlooks every simulation
         compiled="<results>/warmup.done",
     output:

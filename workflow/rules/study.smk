@@ -25,7 +25,7 @@ rule table:
 
 checkpoint ridge_best:
     input:
-        code=code("fiberweb.studies.ridge.best", "fiberweb.products"),
+        code=code("table", "fiberweb.studies.ridge.best", "fiberweb.products"),
         tables="<results>/tables/{setup}/ridge.csv",
     output:
         "<results>/tables/{setup}/ridge_best.csv",

@@ -7,6 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from fiberweb.model.authors import FEATURES_FORCE
 from fiberweb.sections import FEATURES, Positive, Section, Size, Some, key
 from fiberweb.studies.base import Figure, Lab, Point, Table, crosshatch, every, first
 
@@ -17,10 +18,13 @@ class FeaturesSection(Section):
     n: Size = key(6, "size of the crosshatch, N", "", FEATURES)
     length: Positive = key(0.5, "fibre length", "m", FEATURES)
     force: Some[Positive] = key(
-        [0.1372, 0.2, 0.85], "forces: by Eq. 3, of the authors' scripts, of the text", "N", FEATURES
+        [0.1372, FEATURES_FORCE, 0.85],
+        "forces: by Eq. 3, of the authors' scripts, of the text",
+        "N",
+        FEATURES,
     )
     alpha: Positive = key(0.1, "ridge penalty", "", FEATURES)
-    verdict_force: Positive = key(0.2, "the force by which claims are judged", "N")
+    verdict_force: Positive = key(FEATURES_FORCE, "the force by which claims are judged", "N")
     share: Annotated[float, Field(gt=0, lt=1)] = key(
         0.95, "share of a capacity that greedily chosen signals have to keep"
     )
