@@ -124,7 +124,8 @@ def test_smoke_writes_everything(smoked):
     assert claims.loc["G1", "verdict"] == "not applicable"
     assert (out / "benchmarks" / "provenance.json").exists()
     assert all(run in (out / f"logs/simulate/{run}.log").read_text() for run in ran)
-    assert not (smoked.folder / "results").exists()
+    # dry runs of the paper leave digests of the code there, and no result
+    assert {path.name for path in (smoked.folder / "results").glob("*")} <= {"code"}
 
 
 @pytest.mark.slow
@@ -259,7 +260,7 @@ def test_the_same_bytes_again(smoked):
     simulated_again = set(pd.read_csv(first / "tables/described/topology.csv")["run"])
     shutil.copytree(first / "runs", second / "runs", ignore=lambda *_: simulated_again)
     shutil.copy2(first / "warmup.done", second)  # else newer than these runs
-    targets = ("topology", "again/figures/size.png", "again/figures/buckling.png")
+    targets = ("topology", "again/figures/size.png", "again/figures/buckling-B0.9.gif")
     smoked.snakemake(*targets, *SMOKE[:-1], "results=again", cores=1)
     files = [path for part in ("runs", "tables", "figures") for path in (second / part).rglob("*")]
     files = [path for path in files if path.is_file()]
