@@ -42,18 +42,12 @@ def capacity(run):
     return f"{RESULTS}/runs/{run.name}/capacity.nc"
 
 
-@cache
-def best_forces(path):
-    from fiberweb.studies.ridge.best import read_best  # with pandas, which few calls need
-
-    return read_best(path)
-
-
 def study_runs(study, setup):
     """The runs of a study; those that start from the ridge's best forces wait for them."""
-    best = None
     if setup == "described" and getattr(studies.load(study), "AFTER_RIDGE", False):
-        best = best_forces(checkpoints.ridge_best.get(setup=setup).output[0])
+        from fiberweb.studies.ridge.best import read_best  # with pandas, which few calls need
+
+        best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
         return runs(CONFIG, study, setup, best)
     return known_runs(study, setup)
 
