@@ -94,8 +94,9 @@ def _read(path: Path) -> tuple[tuple[Path, ...], str]:
     if path.suffix != ".py":
         return (), hashlib.sha256(text).hexdigest()
     tree = ast.parse(text)
-    used = tuple(dict.fromkeys(_named_by(path.parent, ast.walk(tree))))
-    for node in ast.walk(tree):
+    nodes = list(ast.walk(tree))  # once: every simulation pays for this at its start
+    used = tuple(dict.fromkeys(_named_by(path.parent, nodes)))
+    for node in nodes:
         owner = isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef))
         if owner and ast.get_docstring(node, clean=False) is not None:
             node.body = node.body[1:]

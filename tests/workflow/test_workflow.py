@@ -120,7 +120,9 @@ def test_smoke_writes_everything(smoked):
             assert np.ptp(mpl.image.imread(out / "figures" / f"{name}.png")) > 0.5, name
             assert (out / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF"), name
     claims = pd.read_csv(out / "tables" / "described" / "claims.csv", index_col="id")
-    assert set(claims.loc[["R1", "R2", "S2"], "verdict"]) <= {"holds", "differs", "not computed"}
+    judged = claims["verdict"].isin(["holds", "differs"])
+    assert judged.any() and claims.loc[judged, "value"].notna().all()
+    assert claims.loc["T1", "verdict"] == "not computed"  # it is of the 8x8
     assert claims.loc["G1", "verdict"] == "not applicable"
     assert (out / "benchmarks" / "provenance.json").exists()
     assert all(run in (out / f"logs/simulate/{run}.log").read_text() for run in ran)
