@@ -26,6 +26,7 @@ report: "workflow/report/workflow.rst"
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/inputs.smk"
+include: "workflow/rules/recipes.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
 include: "workflow/rules/study.smk"

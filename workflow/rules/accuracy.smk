@@ -12,6 +12,32 @@ ABOUT = {
     "duration": SECTION.duration,
     "window": SECTION.window,
 }
+PLANE = {"buckling": SECTION.plane, "seconds": SECTION.plane_seconds}
+LIMITS = {
+    "box": SECTION.stability.model_dump(),
+    "steps": SECTION.steps,
+    "drift_steps": SECTION.drift_steps,
+}
+OWN_RECIPES["exudyn.csv"] = code(
+    "exudyn_table", "fiberweb.validation.exudyn_check", "fiberweb.tables"
+)
+OWN_RECIPES["speed_accuracy.csv"] = digest_of(
+    code("speed_accuracy", "fiberweb.validation.accuracy", "fiberweb.tables"),
+    (SECTION.networks, ABOUT),
+    OWN_RECIPES["exudyn.csv"],
+)
+OWN_RECIPES["model_ladder.csv"] = OWN_RECIPES["out_of_plane.csv"] = digest_of(
+    code(
+        "model_ladder",
+        "fiberweb.validation.accuracy",
+        "fiberweb.validation.limits",
+        "fiberweb.tables",
+    ),
+    (ABOUT, PLANE),
+)
+OWN_RECIPES["stability.csv"] = OWN_RECIPES["energy_drift.csv"] = digest_of(
+    code("stability", "fiberweb.validation.limits", "fiberweb.tables"), LIMITS
+)
 # not every platform has a wheel of it; then the tables are made without
 EXUDYN = ["<results>/tables/exudyn.csv"] if find_spec("exudyn") else []
 
@@ -25,7 +51,6 @@ rule accuracy:
 
 rule exudyn:
     input:
-        code=code("exudyn_table", "fiberweb.validation.exudyn_check", "fiberweb.tables"),
         compiled="<results>/warmup.done",
     output:
         "<results>/tables/exudyn.csv",
@@ -35,6 +60,8 @@ rule exudyn:
         "<benchmarks>/accuracy/exudyn.tsv"
     conda:
         "../../envs/environment.yaml"
+    params:
+        recipe=OWN_RECIPES["exudyn.csv"],
     message:
         "Comparing both planar engines with Exudyn"
     script:
@@ -43,7 +70,6 @@ rule exudyn:
 
 rule speed_accuracy:
     input:
-        code=code("speed_accuracy", "fiberweb.validation.accuracy", "fiberweb.tables"),
         compiled="<results>/warmup.done",
         exudyn=EXUDYN,
     output:
@@ -54,9 +80,10 @@ rule speed_accuracy:
         "<benchmarks>/accuracy/speed_accuracy.tsv"
     conda:
         "../../envs/environment.yaml"
-    threads: workflow.cores
+    threads: all_cores
     params:
         about={"networks": SECTION.networks} | ABOUT,
+        recipe=OWN_RECIPES["speed_accuracy.csv"],
     message:
         "Measuring error against cost"
     script:
@@ -65,12 +92,6 @@ rule speed_accuracy:
 
 rule model_ladder:
     input:
-        code=code(
-            "model_ladder",
-            "fiberweb.validation.accuracy",
-            "fiberweb.validation.limits",
-            "fiberweb.tables",
-        ),
         compiled="<results>/warmup.done",
     output:
         ladder="<results>/tables/model_ladder.csv",
@@ -81,10 +102,11 @@ rule model_ladder:
         "<benchmarks>/accuracy/model_ladder.tsv"
     conda:
         "../../envs/environment.yaml"
-    threads: workflow.cores
+    threads: all_cores
     params:
         about=ABOUT,
-        plane={"buckling": SECTION.plane, "seconds": SECTION.plane_seconds},
+        plane=PLANE,
+        recipe=OWN_RECIPES["model_ladder.csv"],
     message:
         "Measuring what each simplification changes"
     script:
@@ -93,7 +115,6 @@ rule model_ladder:
 
 rule stability:
     input:
-        code=code("stability", "fiberweb.validation.limits", "fiberweb.tables"),
         compiled="<results>/warmup.done",
     output:
         limits="<results>/tables/stability.csv",
@@ -105,9 +126,8 @@ rule stability:
     conda:
         "../../envs/environment.yaml"
     params:
-        box=SECTION.stability.model_dump(),
-        steps=SECTION.steps,
-        drift_steps=SECTION.drift_steps,
+        limits=LIMITS,
+        recipe=OWN_RECIPES["stability.csv"],
     message:
         "Looking for the largest stable steps"
     script:

@@ -9,8 +9,7 @@ FURTHER["buckling"] = ANIMATIONS
 
 rule animation:
     input:
-        code=code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
-        responses=lambda wildcards: [response(run) for run in study_runs("buckling", "described")],
+        lambda wildcards: [response(run) for run in study_runs("buckling", "described")],
     output:
         report(ANIMATIONS, caption="../report/figure.rst", category="Figures"),
     log:
@@ -23,6 +22,11 @@ rule animation:
         seconds=CONFIG.buckling.seconds,
         frame_rate=CONFIG.buckling.frame_rate,
         caption=caption("buckling", studies.load("buckling").FIGURES["buckling"], "described"),
+        recipe=lambda wildcards: digest_of(
+            code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
+            (CONFIG.buckling.seconds, CONFIG.buckling.frame_rate),
+            responses_recipe("buckling", "described"),
+        ),
     message:
         "Drawing the animations"
     script:

@@ -3,8 +3,7 @@
 
 rule capacity:
     input:
-        code=code("capacity", "fiberweb.scoring.capacity", "fiberweb.simulation.dataset"),
-        response="<results>/runs/{run}/response.nc",
+        "<results>/runs/{run}/response.nc",
     output:
         "<results>/runs/{run}/capacity.nc",
     log:
@@ -15,6 +14,7 @@ rule capacity:
         "../../envs/environment.yaml"
     params:
         scoring=lambda wildcards: RUNS[wildcards.run].scoring,
+        recipe=lambda wildcards: capacity_recipe(wildcards.run),
     message:
         "Scoring {wildcards.run}"
     script:

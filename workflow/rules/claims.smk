@@ -3,9 +3,8 @@
 
 rule setup_claims:
     input:
-        code=code("claims", "fiberweb.claims.judge", "fiberweb.products", *studies.claims()),
-        tables=claims_tables,
-        published=authors_tables,
+        tables=lambda wildcards: [table(file, wildcards.setup) for file in judged(wildcards.setup)],
+        published=authors_tables(),
     output:
         report(
             "<results>/tables/{setup}/claims.csv",
@@ -20,9 +19,9 @@ rule setup_claims:
     conda:
         "../../envs/environment.yaml"
     params:
-        setup="{setup}",
         modules=studies.claims(),
         published_tables=CONFIG.published_tables,
+        recipe=lambda wildcards: claims_recipe(wildcards.setup),
     message:
         "Holding the paper's claims against the tables, {wildcards.setup}"
     script:
@@ -31,8 +30,7 @@ rule setup_claims:
 
 rule claims:
     input:
-        code=code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
-        claims=[f"<results>/tables/{setup}/claims.csv" for setup in SUFFIXES],
+        [f"<results>/tables/{setup}/claims.csv" for setup in SUFFIXES],
     output:
         report("<results>/tables/claims.csv", caption="../report/claims.rst", category="Claims"),
     log:
@@ -42,6 +40,11 @@ rule claims:
     localrule: True
     conda:
         "../../envs/environment.yaml"
+    params:
+        recipe=lambda wildcards: digest_of(
+            code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
+            [claims_recipe(setup) for setup in SUFFIXES],
+        ),
     message:
         "The claims of both setups side by side"
     script:

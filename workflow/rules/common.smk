@@ -11,27 +11,13 @@ from snakemake.exceptions import WorkflowError
 
 from fiberweb import source, studies
 from fiberweb.config import check_folders, load
+from fiberweb.errors import unknown_key
 from fiberweb.runs import check, run_table, runs
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
-
-
-@cache
-def code(script, *names):
-    """A file with the digest of a script and of the code that modules or functions depend on.
-
-    As an input it reruns what uses that code when it changed, and not for a touch or a comment.
-    """
-    asked = hashlib.sha256("+".join(names).encode()).hexdigest()[:8]
-    path = Path(RESULTS, "code", f"{script}-{asked}")
-    digest = source.digest(*names, script=Path(workflow.basedir, f"workflow/scripts/{script}.py"))
-    if workflow.is_main_process and not (path.exists() and path.read_text() == digest):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(digest)
-    return str(path)
 
 
 def response(run):
@@ -44,7 +30,7 @@ def capacity(run):
 
 def study_runs(study, setup):
     """The runs of a study; those that start from the ridge's best forces wait for them."""
-    if setup == "described" and getattr(studies.load(study), "AFTER_RIDGE", False):
+    if waits(study, setup):
         from fiberweb.studies.ridge.best import read_best  # with pandas, which few calls need
 
         best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
@@ -52,14 +38,24 @@ def study_runs(study, setup):
     return known_runs(study, setup)
 
 
+def waits(study, setup):
+    """Whether the runs of a study start from the ridge's best forces."""
+    return setup == "described" and getattr(studies.load(study), "AFTER_RIDGE", False)
+
+
 @cache
 def known_runs(study, setup):
+    """The runs of a study, with every force that the ridge may find best."""
     return runs(CONFIG, study, setup)
 
 
 def table(file, setup):
     """A file of a study's `TABLES`, of a setup; or, of none, one that a rule of its own makes."""
-    return f"{RESULTS}/tables/{setup}/{file}" if file in TABLES else f"{RESULTS}/tables/{file}"
+    if file not in TABLES and file not in OWN_RECIPES and file != BEST:
+        known = [*TABLES, *OWN_RECIPES, BEST]
+        raise WorkflowError(f"no study makes {file!r}: {unknown_key(file, known)}")
+    folder = f"{RESULTS}/tables"
+    return f"{folder}/{file}" if file in OWN_RECIPES else f"{folder}/{setup}/{file}"
 
 
 def figure(name, setup):
@@ -80,7 +76,9 @@ def products(setup):
     return [*files, f"{RESULTS}/tables/{setup}/claims.csv"]
 
 
+BEST = "ridge_best.csv"  # of a setup, like a study's table, but made by a checkpoint
 FURTHER = {}  # what rules of its own make of a study
+OWN_RECIPES = {}  # of tables that rules of their own make, by file name
 # which study makes a table or a figure
 TABLES = studies.makers("TABLES")
 FIGURES = studies.makers("FIGURES")

@@ -2,8 +2,6 @@
 
 
 rule warmup:
-    input:
-        code=code("warmup", "fiberweb.engines"),
     output:
         touch("<results>/warmup.done"),
     log:
@@ -12,6 +10,8 @@ rule warmup:
         "<benchmarks>/warmup.tsv"
     conda:
         "../../envs/environment.yaml"
+    params:
+        recipe=code("warmup", "fiberweb.engines"),
     message:
         "Compiling the engines, once"
     script:
@@ -20,7 +20,6 @@ rule warmup:
 
 rule simulate:
     input:
-        code=code("simulate", source.RUN, "fiberweb.simulation.dataset"),
         # not ancient(): where warmup has to run, Snakemake 9.27 then overlooks every simulation
         compiled="<results>/warmup.done",
     output:
@@ -34,6 +33,7 @@ rule simulate:
     params:
         scene=lambda wildcards: RUNS[wildcards.run].scene.to_json(),
         numerics=lambda wildcards: RUNS[wildcards.run].numerics,
+        recipe=lambda wildcards: response_recipe(wildcards.run),
     message:
         "Simulating {wildcards.run}"
     script:

@@ -14,9 +14,10 @@ rule table:
     conda:
         "../../envs/environment.yaml"
     params:
-        make=lambda wildcards: table_spec(wildcards)[1].make,
-        single=lambda wildcards: table_spec(wildcards)[1].single,
+        make=lambda wildcards: table_made(wildcards)[1].make,
+        single=lambda wildcards: table_made(wildcards)[1].single,
         options=table_options,
+        recipe=lambda wildcards: table_recipe(wildcards.table, wildcards.setup),
     message:
         "Making {output}"
     script:
@@ -25,7 +26,6 @@ rule table:
 
 checkpoint ridge_best:
     input:
-        code=code("table", "fiberweb.studies.ridge.best", "fiberweb.products"),
         tables="<results>/tables/{setup}/ridge.csv",
     output:
         "<results>/tables/{setup}/ridge_best.csv",
@@ -39,6 +39,7 @@ checkpoint ridge_best:
         make="fiberweb.studies.ridge.best:best_unbuckled",
         single=False,
         options={},
+        recipe=lambda wildcards: best_recipe(wildcards.setup),
     message:
         "Looking for the best unbuckled force of each spacing, {wildcards.setup}"
     script:
@@ -52,7 +53,7 @@ rule figure:
         png=report(
             "<results>/figures/{figure}{suffix}.png",
             caption="../report/figure.rst",  # shows params.caption
-            category=lambda wildcards: figure_spec(wildcards)[1].category,
+            category=lambda wildcards: figure_made(wildcards)[1].category,
         ),
         pdf="<results>/figures/{figure}{suffix}.pdf",
     log:
@@ -62,12 +63,11 @@ rule figure:
     conda:
         "../../envs/environment.yaml"
     params:
-        draw=lambda wildcards: figure_spec(wildcards)[1].draw,
+        draw=lambda wildcards: figure_made(wildcards)[1].draw,
         setup=lambda wildcards: SETUP_OF[wildcards.suffix],
-        options=lambda wildcards: figure_spec(wildcards)[1].options(
-            getattr(CONFIG, FIGURES[wildcards.figure])
-        ),
-        caption=lambda wildcards: caption(*figure_spec(wildcards), SETUP_OF[wildcards.suffix]),
+        options=figure_options,
+        caption=lambda wildcards: caption(*figure_made(wildcards), SETUP_OF[wildcards.suffix]),
+        recipe=lambda wildcards: figure_recipe(wildcards.figure, SETUP_OF[wildcards.suffix]),
     message:
         "Drawing {output.png}"
     script:

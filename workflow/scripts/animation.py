@@ -6,6 +6,6 @@ from fiberweb import products
 from fiberweb.studies.buckling.figure import animate
 
 to_log(snakemake.log[0])
-responses = [products.read(path) for path in snakemake.input.responses]
+responses = [products.read(path) for path in snakemake.input]
 params = snakemake.params
 animate(responses, params.seconds, params.frame_rate, snakemake.output)

@@ -8,4 +8,4 @@ from fiberweb.simulation.dataset import load, save
 to_log(snakemake.log[0])
 print("run", snakemake.wildcards.run)
 
-save(score(load(snakemake.input.response), **snakemake.params.scoring), snakemake.output[0])
+save(score(load(snakemake.input[0]), **snakemake.params.scoring), snakemake.output[0])

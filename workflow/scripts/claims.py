@@ -9,4 +9,6 @@ from fiberweb.claims.judge import evaluate
 
 to_log(snakemake.log[0])
 tables = {Path(path).stem: products.read(path) for path in snakemake.input.tables}
-products.write(evaluate(tables, **snakemake.params), snakemake.output[0])
+params = snakemake.params
+table = evaluate(tables, snakemake.wildcards.setup, params.modules, params.published_tables)
+products.write(table, snakemake.output[0])

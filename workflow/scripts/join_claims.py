@@ -8,5 +8,5 @@ from fiberweb import products
 from fiberweb.claims.judge import join
 
 to_log(snakemake.log[0])
-by_setup = {Path(path).parent.name: products.read(path) for path in snakemake.input.claims}
+by_setup = {Path(path).parent.name: products.read(path) for path in snakemake.input}
 products.write(join(by_setup), snakemake.output[0])

@@ -6,5 +6,6 @@ from fiberweb.tables import write
 from fiberweb.validation.limits import drift, stability
 
 to_log(snakemake.log[0])
-write(stability(snakemake.params.box, snakemake.params.steps), snakemake.output.limits)
-write(drift(snakemake.params.drift_steps), snakemake.output.drift)
+limits = snakemake.params.limits
+write(stability(limits["box"], limits["steps"]), snakemake.output.limits)
+write(drift(limits["drift_steps"]), snakemake.output.drift)
