@@ -9,16 +9,20 @@
 #   snakemake --cores 2 claims       the paper's claims in both setups, side by side
 #   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
-import subprocess
+import os
+import shlex
 import sys
 import time
 
 from snakemake.utils import min_version
 
 min_version("9.27")
+# Snakemake writes the interpreter's path into shell commands as it is, and it may have a blank.
+sys.executable = shlex.quote(sys.executable)
 
 
-configfile: "config/config.yaml"
+# beside this file, wherever Snakemake is called from
+configfile: os.path.relpath(os.path.join(workflow.basedir, "config", "config.yaml"))
 
 
 report: "workflow/report/workflow.rst"
@@ -26,7 +30,6 @@ report: "workflow/report/workflow.rst"
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/inputs.smk"
-include: "workflow/rules/recipes.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/capacity.smk"
 include: "workflow/rules/study.smk"
@@ -61,9 +64,9 @@ onstart:
     # ends in another pass: a third of a core after some hundred jobs.
     workflow.scheduler.job_rate_limiter = None
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
-    subprocess.run([sys.executable, "workflow/scripts/provenance.py", RESULTS], check=True)
+    add_call(RESULTS)
 
 
 onsuccess:
     print(f"Snakemake's own process took {time.process_time():.0f} s of CPU time.")
-    print(f"Done: figures in {RESULTS}/figures, tables and claims in {RESULTS}/tables/<setup>.")
+    print(f"Done: {made()}.")

@@ -13,12 +13,13 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Self
+from typing import Annotated, Self
 
-from pydantic import ValidationError, create_model, model_validator
+from pydantic import BeforeValidator, ValidationError, create_model, model_validator
 
 from fiberweb import studies
 from fiberweb.errors import sentence
+from fiberweb.folders import folder, missing_disk
 from fiberweb.sections import (
     NumericsSection,
     SceneSection,
@@ -29,12 +30,14 @@ from fiberweb.sections import (
 )
 from fiberweb.studies.base import CHOICES, ForceMap, Lab
 
+Folder = Annotated[str, BeforeValidator(lambda value, info: folder(value, info.field_name))]
+
 
 class General(Section):
     """What is not of one study alone."""
 
-    results: str = key("results", "folder that everything is written to", min_length=1)
-    published_tables: str | None = key(
+    results: Folder = key("results", "folder that everything is written to", min_length=1)
+    published_tables: Folder | None = key(
         None, "folder of the authors' own tables; without it the G claims are not computed"
     )
     published_all: bool = key(
@@ -108,9 +111,14 @@ def load(*layers: Mapping | str | Path) -> Config:
 
 def check_folders(config: Config) -> None:
     """Raise ValueError if results cannot be written or the authors' tables are not there."""
-    folder = Path(config.results)
+    results = Path(config.results)
     try:
-        there = next(path for path in (folder, *folder.parents) if path.exists())
+        there = next(path for path in (results, *results.parents) if path.exists())
+        if disk := missing_disk(results):
+            raise ValueError(
+                f"results = {config.results!r} is on a disk that is not mounted: mount {disk}, or "
+                "name a folder elsewhere"
+            )
         with TemporaryFile(dir=there):
             pass
     except OSError as error:

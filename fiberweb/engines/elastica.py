@@ -6,6 +6,10 @@ means 40 /s on rotations only in those units (in SI the same call gives 4e7 /s).
 
 from __future__ import annotations
 
+import fiberweb.engines.jit  # noqa: F401  (first: it says where PyElastica's kernels are kept, too)
+
+# isort: split
+
 import elastica as ea
 import numpy as np
 from elastica._rotations import _inv_rotate

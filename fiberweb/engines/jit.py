@@ -1,27 +1,13 @@
-"""How the kernels are compiled, and where the result is kept.
-
-Compiled kernels are cached on disk in a folder named by a hash of the engines' sources: Numba
-keys a cache entry by the file of the function itself, so an edited callee would otherwise
-leave a stale caller behind.
-"""
+"""How the kernels are compiled; `fiberweb.engines.cache` keeps the result."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
+import llvmlite.binding as llvm
+from numba import njit
 
-from fiberweb.source import source_hash
+from fiberweb.engines import cache
 
-
-def _cache_folder() -> Path:
-    base = os.environ.get("FIBERWEB_CACHE") or Path.home() / ".cache" / "fiberweb"
-    return Path(base) / source_hash()
-
-
-os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_folder()))
-
-import llvmlite.binding as llvm  # noqa: E402  (the cache folder must be set before Numba loads)
-from numba import njit  # noqa: E402
+cache.use()  # before anything is compiled
 
 # A pass over n arrays needs up to n^2 checks that none overlap; LLVM gives up at 8 and then
 # leaves square roots and divisions scalar.

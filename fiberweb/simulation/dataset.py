@@ -31,6 +31,14 @@ def load(path: str | Path) -> xr.Dataset:
 
     Raises:
         FileNotFoundError: there is no such file.
+        ValueError: it is broken, one sentence.
     """
-    with xr.open_dataset(path, engine="netcdf4") as data:
-        return data.load()
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as data:
+            return data.load()
+    except FileNotFoundError:
+        raise
+    except (OSError, RuntimeError) as error:
+        raise ValueError(
+            f"{path} cannot be read ({error}): if it was cut short, delete it and have it made anew"
+        ) from error

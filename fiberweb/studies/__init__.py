@@ -32,6 +32,17 @@ def setups(name: str) -> tuple[str, ...]:
     return getattr(load(name), "SETUPS", ("described", "published"))
 
 
+def waits(name: str, setup: str) -> bool:
+    """Whether the runs of a study start from the best forces of the ridge."""
+    return setup == "described" and getattr(load(name), "AFTER_RIDGE", False)
+
+
+def judged_by(setup: str) -> list[str]:
+    """The tables that the rules of the claims read, of the studies that a setup runs."""
+    taking_part = [load(name) for name in STUDIES if setup in setups(name)]
+    return [file for study in taking_part for file in getattr(study, "JUDGED_BY", ())]
+
+
 def makers(kind: str) -> dict[str, str]:
     """Which study makes each of the "TABLES" or "FIGURES".
 

@@ -215,9 +215,28 @@ def test_names_of_runs_are_stable():
     crossings = {"crossing_stiffness": 50.0, "crossing_damping": 1.0}
     config = load({"setups": {"described": crossings | {"damping": 10.0}}})
     assert [runs(config, "topology", setup)[1].name for setup in SETUPS] == [
-        "crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-d9007a",
-        "crosshatch-n04-s100.0mm-f50.0mN-t10.0mN-published-3973d9",
+        "crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-d9007aa893f5",
+        "crosshatch-n04-s100.0mm-f50.0mN-t10.0mN-published-3973d93796c2",
     ]
+
+
+@pytest.mark.parametrize(("n", "seeds"), [(2, (4697, 4705)), (4, (1038, 10809))])
+def test_two_scenes_have_two_names(n, seeds):
+    """These shared one of six digits: one run for both, and a row lost."""
+    values = {
+        "scene": {"duration": 4.0},
+        "numerics": {"accuracy": "draft"},
+        "robustness": {"n": [n], "seed": list(seeds)},
+    }
+    names = {run.name for run in runs(load(PAPER, values), "robustness", "described")}
+    assert len(names) == 2
+
+
+def test_one_name_for_two_scenes_is_refused(monkeypatch):
+    monkeypatch.setattr("fiberweb.runs.DIGITS", 1)
+    with pytest.raises(ValueError, match="is the name of two scenes, .* and .*: change") as caught:
+        run_table(load({"robustness": {"n": [4], "seed": list(range(1, 18))}}))
+    assert is_one_sentence(str(caught.value))
 
 
 def test_the_paper_has_ten_networks_in_each_setup():

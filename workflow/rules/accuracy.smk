@@ -18,15 +18,15 @@ LIMITS = {
     "steps": SECTION.steps,
     "drift_steps": SECTION.drift_steps,
 }
-OWN_RECIPES["exudyn.csv"] = code(
+RECIPES.own["exudyn.csv"] = code(
     "exudyn_table", "fiberweb.validation.exudyn_check", "fiberweb.tables"
 )
-OWN_RECIPES["speed_accuracy.csv"] = digest_of(
+RECIPES.own["speed_accuracy.csv"] = digest_of(
     code("speed_accuracy", "fiberweb.validation.accuracy", "fiberweb.tables"),
     (SECTION.networks, ABOUT),
-    OWN_RECIPES["exudyn.csv"],
+    RECIPES.own["exudyn.csv"],
 )
-OWN_RECIPES["model_ladder.csv"] = OWN_RECIPES["out_of_plane.csv"] = digest_of(
+RECIPES.own["model_ladder.csv"] = RECIPES.own["out_of_plane.csv"] = digest_of(
     code(
         "model_ladder",
         "fiberweb.validation.accuracy",
@@ -35,7 +35,7 @@ OWN_RECIPES["model_ladder.csv"] = OWN_RECIPES["out_of_plane.csv"] = digest_of(
     ),
     (ABOUT, PLANE),
 )
-OWN_RECIPES["stability.csv"] = OWN_RECIPES["energy_drift.csv"] = digest_of(
+RECIPES.own["stability.csv"] = RECIPES.own["energy_drift.csv"] = digest_of(
     code("stability", "fiberweb.validation.limits", "fiberweb.tables"), LIMITS
 )
 # not every platform has a wheel of it; then the tables are made without
@@ -61,7 +61,7 @@ rule exudyn:
     conda:
         "../../envs/environment.yaml"
     params:
-        recipe=OWN_RECIPES["exudyn.csv"],
+        recipe=RECIPES.own["exudyn.csv"],
     message:
         "Comparing both planar engines with Exudyn"
     script:
@@ -83,7 +83,7 @@ rule speed_accuracy:
     threads: all_cores
     params:
         about={"networks": SECTION.networks} | ABOUT,
-        recipe=OWN_RECIPES["speed_accuracy.csv"],
+        recipe=RECIPES.own["speed_accuracy.csv"],
     message:
         "Measuring error against cost"
     script:
@@ -106,7 +106,7 @@ rule model_ladder:
     params:
         about=ABOUT,
         plane=PLANE,
-        recipe=OWN_RECIPES["model_ladder.csv"],
+        recipe=RECIPES.own["model_ladder.csv"],
     message:
         "Measuring what each simplification changes"
     script:
@@ -127,7 +127,7 @@ rule stability:
         "../../envs/environment.yaml"
     params:
         limits=LIMITS,
-        recipe=OWN_RECIPES["stability.csv"],
+        recipe=RECIPES.own["stability.csv"],
     message:
         "Looking for the largest stable steps"
     script:

@@ -25,7 +25,7 @@ rule animation:
         recipe=lambda wildcards: digest_of(
             code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
             (CONFIG.buckling.seconds, CONFIG.buckling.frame_rate),
-            responses_recipe("buckling", "described"),
+            RECIPES.responses("buckling", "described"),
         ),
     message:
         "Drawing the animations"

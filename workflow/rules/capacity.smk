@@ -14,7 +14,7 @@ rule capacity:
         "../../envs/environment.yaml"
     params:
         scoring=lambda wildcards: RUNS[wildcards.run].scoring,
-        recipe=lambda wildcards: capacity_recipe(wildcards.run),
+        recipe=lambda wildcards: RECIPES.capacity(wildcards.run),
     message:
         "Scoring {wildcards.run}"
     script:

@@ -3,8 +3,10 @@
 
 rule setup_claims:
     input:
-        tables=lambda wildcards: [table(file, wildcards.setup) for file in judged(wildcards.setup)],
-        published=authors_tables(),
+        tables=lambda wildcards: [
+            table(file, wildcards.setup) for file in studies.judged_by(wildcards.setup)
+        ],
+        published=lambda wildcards: authors_tables(),
     output:
         report(
             "<results>/tables/{setup}/claims.csv",
@@ -21,7 +23,7 @@ rule setup_claims:
     params:
         modules=studies.claims(),
         published_tables=CONFIG.published_tables,
-        recipe=lambda wildcards: claims_recipe(wildcards.setup),
+        recipe=lambda wildcards: RECIPES.claims(wildcards.setup, authors_tables()),
     message:
         "Holding the paper's claims against the tables, {wildcards.setup}"
     script:
@@ -43,7 +45,7 @@ rule claims:
     params:
         recipe=lambda wildcards: digest_of(
             code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
-            [claims_recipe(setup) for setup in SUFFIXES],
+            [RECIPES.claims(setup, authors_tables()) for setup in SUFFIXES],
         ),
     message:
         "The claims of both setups side by side"

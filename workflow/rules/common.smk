@@ -1,23 +1,46 @@
 # The run table, and where things lie. Config errors end here, as one sentence each.
 
-import hashlib
 import os
 import sys
-from functools import cache
+from collections import Counter
 from glob import glob
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from fiberweb import source, studies
+from fiberweb import studies
 from fiberweb.config import check_folders, load
 from fiberweb.errors import unknown_key
+from fiberweb.provenance import add_call
+from fiberweb.recipes import BEST, Recipes, code, digest_of
 from fiberweb.runs import check, run_table, runs
+from fiberweb.written import cut_short
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
+
+
+def make_whole(wildcards):
+    """Have files that were cut short made again, as `--forcerun` would those that are asked for.
+
+    Input function of the one job that every file hangs on; it gives no files.
+    """
+    workflow.dag.forcefiles.update(CUT_SHORT)
+    return []
+
+
+def made():
+    """What the jobs of this call made, counted by folder."""
+    runs = Path(RESULTS, "runs")
+    finished = filter(workflow.dag.finished, workflow.dag.jobs)
+    folders = Counter(
+        runs if runs in Path(file).parents else Path(file).parent
+        for job in finished
+        for file in job.output
+    )
+    return ", ".join(f"{count} files in {folder}" for folder, count in sorted(folders.items()))
 
 
 def response(run):
@@ -30,32 +53,19 @@ def capacity(run):
 
 def study_runs(study, setup):
     """The runs of a study; those that start from the ridge's best forces wait for them."""
-    if waits(study, setup):
+    if studies.waits(study, setup):
         from fiberweb.studies.ridge.best import read_best  # with pandas, which few calls need
 
         best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
         return runs(CONFIG, study, setup, best)
-    return known_runs(study, setup)
-
-
-def waits(study, setup):
-    """Whether the runs of a study start from the ridge's best forces."""
-    return setup == "described" and getattr(studies.load(study), "AFTER_RIDGE", False)
-
-
-@cache
-def known_runs(study, setup):
-    """The runs of a study, with every force that the ridge may find best."""
-    return runs(CONFIG, study, setup)
+    return RECIPES.possible(study, setup)
 
 
 def table(file, setup):
     """A file of a study's `TABLES`, of a setup; or, of none, one that a rule of its own makes."""
-    if file not in TABLES and file not in OWN_RECIPES and file != BEST:
-        known = [*TABLES, *OWN_RECIPES, BEST]
-        raise WorkflowError(f"no study makes {file!r}: {unknown_key(file, known)}")
-    folder = f"{RESULTS}/tables"
-    return f"{folder}/{file}" if file in OWN_RECIPES else f"{folder}/{setup}/{file}"
+    if file not in (known := [*TABLES, *RECIPES.own, BEST]):
+        raise WorkflowError(f"no study makes the table {file}: {unknown_key(file, known)}")
+    return f"{RESULTS}/tables/{'' if file in RECIPES.own else f'{setup}/'}{file}"
 
 
 def figure(name, setup):
@@ -76,9 +86,7 @@ def products(setup):
     return [*files, f"{RESULTS}/tables/{setup}/claims.csv"]
 
 
-BEST = "ridge_best.csv"  # of a setup, like a study's table, but made by a checkpoint
 FURTHER = {}  # what rules of its own make of a study
-OWN_RECIPES = {}  # of tables that rules of their own make, by file name
 # which study makes a table or a figure
 TABLES = studies.makers("TABLES")
 FIGURES = studies.makers("FIGURES")
@@ -87,11 +95,17 @@ try:
     CONFIG = load(config)
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
+    RECIPES = Recipes(CONFIG, RUNS)
+    CUT_SHORT = {}
     if workflow.is_main_process:  # a job on a cluster need not check again
         check_folders(CONFIG)
+        CUT_SHORT = cut_short(RESULTS)
         check(run for run in RUNS.values() if not Path(response(run)).exists())
 except ValueError as error:
     sys.exit(str(error))  # this prints the sentence and nothing else
+
+for broken in CUT_SHORT.values():
+    print(f"{broken}; it is made again with what rests on it.", file=sys.stderr)
 
 
 pathvars:

@@ -13,17 +13,11 @@ def made_in(study, setup):
     return study
 
 
-def table_spec(file, possible):
-    """(the section, the `Table`, those of the study's runs that it is made of)"""
-    study = TABLES[file]
-    section, spec = getattr(CONFIG, study), studies.load(study).TABLES[file]
-    return section, spec, spec.runs(possible, section)
-
-
 def table_made(wildcards):
-    """`table_spec` of the table that a job makes."""
+    """(the section, the `Table`, the runs that it is made of)"""
     study = made_in(TABLES[wildcards.table], wildcards.setup)
-    return table_spec(wildcards.table, study_runs(study, wildcards.setup))
+    section, spec = getattr(CONFIG, study), studies.load(study).TABLES[wildcards.table]
+    return section, spec, spec.runs(study_runs(study, wildcards.setup), section)
 
 
 def table_input(wildcards):
@@ -40,9 +34,10 @@ def table_options(wildcards):
     return spec.options(section, chosen) | choices
 
 
-def figure_spec(name, setup):
-    study = made_in(FIGURES[name], setup)
-    return study, studies.load(study).FIGURES[name]
+def figure_made(wildcards):
+    """(the study, the `Figure`)"""
+    study = made_in(FIGURES[wildcards.figure], SETUP_OF[wildcards.suffix])
+    return study, studies.load(study).FIGURES[wildcards.figure]
 
 
 def caption(study, spec, setup):
@@ -59,24 +54,9 @@ def figure_input(wildcards):
     }
 
 
-def figure_made(wildcards):
-    """`figure_spec` of the figure that a job draws."""
-    return figure_spec(wildcards.figure, SETUP_OF[wildcards.suffix])
-
-
 def figure_options(wildcards):
     study, spec = figure_made(wildcards)
     return spec.options(getattr(CONFIG, study))
-
-
-def judged(setup):
-    """The tables that the rules of the claims read, of the studies that the setup runs."""
-    return [
-        file
-        for study in studies.STUDIES
-        if setup in studies.setups(study)
-        for file in getattr(studies.load(study), "JUDGED_BY", ())
-    ]
 
 
 def authors_tables():

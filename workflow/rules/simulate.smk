@@ -2,6 +2,8 @@
 
 
 rule warmup:
+    input:
+        make_whole,
     output:
         touch("<results>/warmup.done"),
     log:
@@ -33,7 +35,7 @@ rule simulate:
     params:
         scene=lambda wildcards: RUNS[wildcards.run].scene.to_json(),
         numerics=lambda wildcards: RUNS[wildcards.run].numerics,
-        recipe=lambda wildcards: response_recipe(wildcards.run),
+        recipe=lambda wildcards: RECIPES.response(wildcards.run),
     message:
         "Simulating {wildcards.run}"
     script:

@@ -17,7 +17,7 @@ rule table:
         make=lambda wildcards: table_made(wildcards)[1].make,
         single=lambda wildcards: table_made(wildcards)[1].single,
         options=table_options,
-        recipe=lambda wildcards: table_recipe(wildcards.table, wildcards.setup),
+        recipe=lambda wildcards: RECIPES.table(wildcards.table, wildcards.setup),
     message:
         "Making {output}"
     script:
@@ -39,7 +39,7 @@ checkpoint ridge_best:
         make="fiberweb.studies.ridge.best:best_unbuckled",
         single=False,
         options={},
-        recipe=lambda wildcards: best_recipe(wildcards.setup),
+        recipe=lambda wildcards: RECIPES.table(BEST, wildcards.setup),
     message:
         "Looking for the best unbuckled force of each spacing, {wildcards.setup}"
     script:
@@ -67,7 +67,7 @@ rule figure:
         setup=lambda wildcards: SETUP_OF[wildcards.suffix],
         options=figure_options,
         caption=lambda wildcards: caption(*figure_made(wildcards), SETUP_OF[wildcards.suffix]),
-        recipe=lambda wildcards: figure_recipe(wildcards.figure, SETUP_OF[wildcards.suffix]),
+        recipe=lambda wildcards: RECIPES.figure(wildcards.figure, SETUP_OF[wildcards.suffix]),
     message:
         "Drawing {output.png}"
     script:

@@ -5,7 +5,7 @@ from logs import to_log
 from fiberweb import products
 from fiberweb.studies.buckling.figure import animate
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 responses = [products.read(path) for path in snakemake.input]
 params = snakemake.params
 animate(responses, params.seconds, params.frame_rate, snakemake.output)

@@ -7,7 +7,7 @@ from logs import to_log
 from fiberweb import products
 from fiberweb.claims.judge import evaluate
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 tables = {Path(path).stem: products.read(path) for path in snakemake.input.tables}
 params = snakemake.params
 table = evaluate(tables, snakemake.wildcards.setup, params.modules, params.published_tables)

@@ -6,7 +6,7 @@ from logs import to_log
 
 from fiberweb import products
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 source, params = snakemake.input, snakemake.params
 given = {Path(path).stem: products.read(path) for path in source.given}
 if source.responses:

@@ -7,6 +7,6 @@ from logs import to_log
 from fiberweb import products
 from fiberweb.claims.judge import join
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 by_setup = {Path(path).parent.name: products.read(path) for path in snakemake.input}
 products.write(join(by_setup), snakemake.output[0])

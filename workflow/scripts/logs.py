@@ -1,16 +1,26 @@
 """Where a script's output goes."""
 
+import atexit
 import os
 import signal
 import sys
 
+from fiberweb.written import note
 
-def to_log(path):
-    """Send everything printed from now on, tracebacks and what libraries say, to a file."""
+
+def to_log(job):
+    """Send everything printed from now on, tracebacks and what libraries say, to the job's log;
+    its last lines are what the job wrote.
+
+    Args:
+        job: what Snakemake gives to a script.
+    """
     # Ctrl-C ends a job at once: an exception inside NetCDF's lock leaves it held, and the process
     # then waits for it for ever
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    path = job.log[0]
     with open(path, "w") as log:
         os.dup2(log.fileno(), 1)
         os.dup2(log.fileno(), 2)
     sys.stdout.reconfigure(line_buffering=True)
+    atexit.register(note, path, list(job.output))

@@ -8,7 +8,7 @@ from fiberweb.simulation.explain import describe
 from fiberweb.simulation.plan import plan
 from fiberweb.simulation.simulate import run
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 print("run", snakemake.wildcards.run)
 print("scene", snakemake.params.scene)
 print("numerics", snakemake.params.numerics)

@@ -4,7 +4,7 @@ from logs import to_log
 
 from fiberweb import products
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 source, params = snakemake.input, snakemake.params
 given = dict(params.options)
 if capacities := source.get("capacities"):

@@ -4,5 +4,5 @@ from logs import to_log
 
 from fiberweb.engines import warmup
 
-to_log(snakemake.log[0])
+to_log(snakemake)
 warmup()

@@ -1,0 +1,59 @@
+"""What made the results: the commit and the versions of each call of the workflow."""
+
+from __future__ import annotations
+
+import json
+import platform
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+PACKAGES = ("snakemake", "numpy", "scipy", "numba", "pyelastica", "xarray", "pandas", "matplotlib")
+
+
+def add_call(results: str | Path) -> None:
+    """Add one call to <results>/benchmarks/provenance.json."""
+    path = Path(results) / "benchmarks" / "provenance.json"
+    changes = _git("status", "--porcelain")
+    call = {
+        "commit": _git("rev-parse", "HEAD"),
+        "uncommitted_changes": None if changes is None else bool(changes),
+        "python": platform.python_version(),
+        "machine": platform.platform(),
+        "versions": {package: _installed(package) for package in PACKAGES},
+    }
+    calls = [*_earlier(path), call]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps(calls, indent=2), encoding="utf-8")
+    partial.replace(path)
+
+
+def _earlier(path: Path) -> list[dict]:
+    """The calls so far; a file that is broken is set aside."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return []
+    except ValueError:
+        aside = path.replace(path.with_suffix(".broken"))
+        print(f"{path} is broken: it is now {aside}, and a new one begins.", file=sys.stderr)
+        return []
+
+
+def _git(*arguments: str) -> str | None:
+    """Output of git where this code is; None where there is no repository or no git."""
+    command = ["git", "-C", str(Path(__file__).parent), *arguments]
+    try:
+        called = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return called.stdout.strip()
+
+
+def _installed(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None

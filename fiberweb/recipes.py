@@ -1,0 +1,121 @@
+"""What each file of the workflow rests on, as one digest: the code and the options that make it,
+and the same of all that it is made of.
+
+Each rule has this digest among its params, so that a file is made again when anything changed that
+it hangs on, however far away. Snakemake's own records do not see to that: of a job that dies they
+keep the new inputs as if it had ended, and its output is deleted; what hangs on a change only
+through the deleted file then looks up to date, and the old figure stays.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from fiberweb import source, studies
+from fiberweb.config import Config
+from fiberweb.runs import Run, runs
+
+SCRIPTS = source.ROOT.parent / "workflow" / "scripts"
+BEST = "ridge_best.csv"  # of a setup, like a study's table, but made by a checkpoint
+
+
+def digest_of(*parts: object) -> str:
+    """Digest of what is the same whenever it prints the same."""
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
+
+
+@cache
+def code(script: str, *names: str) -> str:
+    """Digest of a script and of the code that modules or functions depend on; a comment or the
+    layout of code does not change it."""
+    return source.digest(*names, script=SCRIPTS / f"{script}.py")
+
+
+class Recipes:
+    """The digests under one config.
+
+    Attributes:
+        own: of tables that rules of their own make, by file name.
+    """
+
+    def __init__(self, config: Config, table: dict[str, Run]):
+        self._config, self._runs = config, table
+        self._makers = {kind: studies.makers(kind) for kind in ("TABLES", "FIGURES")}
+        self.own: dict[str, str] = {}
+        # of hundreds of runs, each asked for by several tables
+        self.response, self.capacity = cache(self.response), cache(self.capacity)
+        self.possible = cache(self.possible)
+
+    def possible(self, study: str, setup: str) -> list[Run]:
+        """The runs of a study, with every force that the ridge may find best: these are known
+        before the checkpoint is there."""
+        return runs(self._config, study, setup)
+
+    def response(self, run: str) -> str:
+        """Of a run by its name."""
+        made_by = code("simulate", source.RUN, "fiberweb.simulation.dataset")
+        return digest_of(made_by, self._runs[run].request)
+
+    def capacity(self, run: str) -> str:
+        """Of a run by its name."""
+        made_by = code("capacity", "fiberweb.scoring.capacity", "fiberweb.simulation.dataset")
+        return digest_of(made_by, self._runs[run].scoring, self.response(run))
+
+    def table(self, file: str, setup: str) -> str:
+        """Of any table, by its file name."""
+        if file == BEST:
+            made_by = code("table", "fiberweb.studies.ridge.best", "fiberweb.products")
+            return digest_of(made_by, self.table("ridge.csv", setup))
+        if file in self.own:
+            return self.own[file]
+        study = self._makers["TABLES"][file]
+        section, spec = getattr(self._config, study), studies.load(study).TABLES[file]
+        chosen = spec.runs(self.possible(study, setup), section)
+        names = [run.name for run in chosen]
+        return digest_of(
+            code("table", spec.make, "fiberweb.products"),
+            (spec.make, spec.single, spec.options(section, chosen)),
+            [run.choice for run in chosen] if spec.choices else [],
+            self._choice(study, setup),
+            [self.table(given, setup) for given in spec.tables],
+            [self.capacity(name) for name in names] if spec.capacities else [],
+            [self.response(name) for name in names] if spec.responses else [],
+        )
+
+    def figure(self, name: str, setup: str) -> str:
+        """Of a figure."""
+        study = self._makers["FIGURES"][name]
+        spec = studies.load(study).FIGURES[name]
+        return digest_of(
+            code("figure", spec.draw, "fiberweb.products"),
+            (spec.draw, spec.options(getattr(self._config, study))),
+            [self.table(file, setup) for file in spec.given],
+            self.responses(study, setup) if spec.responses else "",
+        )
+
+    def responses(self, study: str, setup: str) -> str:
+        """Of all responses of a study."""
+        names = [run.name for run in self.possible(study, setup)]
+        return digest_of(self._choice(study, setup), [self.response(name) for name in names])
+
+    def claims(self, setup: str, published: Iterable[str]) -> str:
+        """Of the claims of a setup.
+
+        Args:
+            setup: name.
+            published: files of the authors' own tables.
+        """
+        return digest_of(
+            code("claims", "fiberweb.claims.judge", "fiberweb.products", *studies.claims()),
+            [self.table(file, setup) for file in studies.judged_by(setup)],
+            [hashlib.sha256(Path(path).read_bytes()).hexdigest() for path in published],
+        )
+
+    def _choice(self, study: str, setup: str) -> str:
+        """Of what chooses a study's runs from the possible ones."""
+        if not studies.waits(study, setup):
+            return ""
+        return digest_of(code("table", f"fiberweb.studies.{study}"), self.table(BEST, setup))

@@ -1,0 +1,32 @@
+"""The list of calls survives what happens to its file."""
+
+import json
+
+from fiberweb.provenance import add_call
+
+
+def test_calls_are_added(tmp_path):
+    add_call(tmp_path)
+    add_call(tmp_path)
+    calls = json.loads((tmp_path / "benchmarks" / "provenance.json").read_text())
+    assert len(calls) == 2
+    assert calls[0]["versions"]["numba"]
+
+
+def test_a_broken_list_is_set_aside_with_a_sentence(tmp_path, capsys):
+    add_call(tmp_path)
+    path = tmp_path / "benchmarks" / "provenance.json"
+    path.write_text(path.read_text()[:100])
+    add_call(tmp_path)
+    assert len(json.loads(path.read_text())) == 1
+    assert f"{path} is broken" in capsys.readouterr().err
+    assert len(path.with_suffix(".broken").read_text()) == 100
+
+
+def test_the_commit_is_that_of_the_code(tmp_path, monkeypatch):
+    """And not of the repository in which results happen to be."""
+    add_call(tmp_path / "a")
+    monkeypatch.chdir(tmp_path)
+    add_call(tmp_path / "b")
+    a, b = (json.loads((tmp_path / x / "benchmarks/provenance.json").read_text()) for x in "ab")
+    assert a == b

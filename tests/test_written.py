@@ -1,0 +1,53 @@
+"""Sizes of files in the logs of the jobs that wrote them."""
+
+import contextlib
+
+import pytest
+
+from fiberweb.written import cut_short, note
+
+
+@pytest.fixture
+def results(tmp_path):
+    """Results of one job that wrote two files."""
+    results = tmp_path / "logs" / "results"  # a name that may well come twice
+    log = results / "logs" / "tables" / "topology.csv.log"
+    log.parent.mkdir(parents=True)
+    paths = [results / "tables" / name for name in ("topology.csv", "my table, 2 bytes")]
+    paths[0].parent.mkdir()
+    for path in paths:
+        path.write_text("a,b\n1,2\n")
+    with log.open("w") as file, contextlib.redirect_stdout(file):
+        print("as a job does")
+        note(log, [*paths, results / "tables" / "missing.csv"])
+    return results
+
+
+def test_whole_files_are_whole(results):
+    assert cut_short(results) == {}
+
+
+def test_a_file_cut_short_is_named_with_its_sizes(results):
+    for name in ("topology.csv", "my table, 2 bytes"):
+        path = results / "tables" / name
+        path.write_text("a,b\n")
+        sentence = f"{path} is broken: it has 4 bytes of the 8 written"
+        assert cut_short(results) == {str(path): sentence}
+        path.unlink()  # what is not there is missing, and not broken
+        assert cut_short(results) == {}
+
+
+def test_results_that_were_moved_are_checked_where_they_are(results):
+    moved = results.rename(results.with_name("moved"))
+    (moved / "tables" / "topology.csv").write_text("")
+    assert list(cut_short(moved)) == [str(moved / "tables" / "topology.csv")]
+
+
+def test_a_job_at_work_has_no_note_yet(results):
+    (results / "logs" / "tables" / "topology.csv.log").write_text("started\n")
+    (results / "tables" / "topology.csv").write_text("")
+    assert cut_short(results) == {}
+
+
+def test_no_results_yet(tmp_path):
+    assert cut_short(tmp_path / "nothing") == {}

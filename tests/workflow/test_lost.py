@@ -1,0 +1,151 @@
+"""Jobs killed, Snakemake killed, files cut short: the same command makes it right."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.workflow.conftest import SMOKE
+
+KEYS = """
+results: tiny
+scene: {duration: 3.3}
+numerics: {accuracy: draft}
+topology: {crosshatch: [2], polygon: []}
+"""
+FIGURE = "tiny/figures/topology.png"
+COMMAND = (FIGURE, "--configfile", "tiny.yaml")
+
+
+@pytest.fixture
+def tiny(smoked):
+    """The tree after one run of two fibres, and what was printed."""
+    (smoked.folder / "tiny.yaml").write_text(KEYS)
+    smoked.printed = smoked.snakemake(*COMMAND)
+    return smoked
+
+
+def start(tree, *arguments):
+    return subprocess.Popen(
+        [sys.executable, "-m", "snakemake", *arguments, "--cores", "2"],
+        cwd=tree.folder, env=tree.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        text=True, start_new_session=True,
+    )  # fmt: skip
+
+
+def scripts(call, stage):
+    """Processes that a call started for jobs of a stage."""
+    for process in psutil.Process(call.pid).children(recursive=True):
+        try:
+            # Snakemake gives it a name such as .snakemake/scripts/tmp1234.table.py
+            if process.name() != "bash" and process.cmdline()[-1].endswith(f".{stage}.py"):
+                yield process
+        except (psutil.NoSuchProcess, IndexError):
+            continue
+
+
+def killed(tree, stage, *arguments):
+    """How many jobs of a stage a call started, each of which was killed; the call must fail."""
+    call, found = start(tree, *arguments), set()
+    while call.poll() is None:
+        for process in scripts(call, stage):
+            process.kill()
+            found.add(process.pid)
+        time.sleep(0.02)
+    assert call.returncode != 0, call.stdout.read()
+    return len(found)
+
+
+@pytest.mark.slow
+def test_what_is_killed_after_a_change_leaves_nothing_of_the_old_config(tiny, edited):
+    """Each stage in turn, by the same command, which has to come to the end of the next one."""
+    old = (tiny.folder / FIGURE).read_bytes()
+    (tiny.folder / "tiny.yaml").write_text(KEYS + "scoring: {alpha: 0.5}\n")
+    assert killed(tiny, "capacity", *COMMAND) == 1
+    assert killed(tiny, "table", *COMMAND) == 2  # the others do without capacities
+    assert killed(tiny, "figure", *COMMAND) == 1
+    tiny.snakemake(*COMMAND)
+    assert (tiny.folder / FIGURE).read_bytes() != old
+    assert tiny.planned(*COMMAND) == {}
+    # likewise after an edit: the figure hangs on it only through tables, which are deleted
+    edited("fiberweb/scoring/tables.py", "\nEDITED = True\n")
+    assert killed(tiny, "table", *COMMAND) == 3
+    assert tiny.planned(*COMMAND) == {"table": 3, "figure": 1}
+
+
+@pytest.mark.slow
+def test_files_cut_short_are_named_and_made_again(tiny):
+    out = tiny.folder / "tiny"
+    (run,) = (out / "runs").iterdir()
+    broken = [run / "response.nc", run / "capacity.nc", out / "tables/described/topology.csv"]
+    whole = [path.read_bytes() for path in broken]
+    for path, content in zip(broken, whole, strict=True):
+        # a table in the middle of a line's end, where nobody sees it
+        path.write_bytes(content[: content.rindex(b"\n", 0, -1) + 1])
+    calls = out / "benchmarks" / "provenance.json"
+    calls.write_text(calls.read_text()[:-40])
+    printed = tiny.snakemake(*COMMAND)
+    for path in (*broken, calls):
+        assert re.search(rf"{path.relative_to(tiny.folder)} is broken", printed), printed
+    assert [path.read_bytes() for path in broken] == whole
+    assert calls.read_text().startswith("[")
+    assert "broken" not in tiny.snakemake(*COMMAND)
+
+
+@pytest.mark.slow
+def test_a_file_cut_short_blocks_nothing_else(smoked):
+    response = next((smoked.folder / "out" / "runs").glob("crosshatch-n08*/response.nc"))
+    content, stat = response.read_bytes(), response.stat()
+    response.write_bytes(content[:1000])
+    try:
+        printed = smoked.snakemake("topology", "--dry-run", *SMOKE)
+        assert f"{response.relative_to(smoked.folder)} is broken: it has 1000 bytes" in printed
+        assert "Nothing to be done" in printed
+        planned = smoked.planned("calibration", *SMOKE)
+        assert (planned["simulate"], planned["capacity"], planned["figure"]) == (1, 1, 1)
+    finally:
+        response.write_bytes(content)
+        os.utime(response, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+
+
+@pytest.mark.slow
+def test_after_snakemake_was_killed(tiny):
+    call = start(tiny, *COMMAND, "--forcerun", "capacity")
+    while not list(scripts(call, "capacity")):
+        assert call.poll() is None, call.stdout.read()
+        time.sleep(0.02)
+    os.killpg(call.pid, signal.SIGKILL)
+    call.wait()
+    # as people type it, without --cores
+    for asked in (("--unlock",), ("--summary",), ("--dag",), ("--report", "tiny/report.html")):
+        done = subprocess.run(
+            [sys.executable, "-m", "snakemake", FIGURE, *asked, "--configfile", "tiny.yaml"],
+            cwd=tiny.folder, env=tiny.environment, capture_output=True, text=True,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        if asked == ("--unlock",):
+            tiny.snakemake(*COMMAND)
+    assert (tiny.folder / "tiny" / "report.html").stat().st_size > 1e5
+
+
+@pytest.mark.slow
+def test_the_last_line_names_what_was_made(smoked):
+    (smoked.folder / "last.yaml").write_text(KEYS.replace("tiny", "last"))
+    first = smoked.snakemake("last/tables/described/topology.csv", "--configfile", "last.yaml")
+    second = smoked.snakemake("last/figures/topology.png", "--configfile", "last.yaml")
+    described = "last/tables/described"
+    expected = [
+        {"last": 1, "last/runs": 2, described: 1},
+        {"last/figures": 2, described: 3},
+    ]
+    for printed, made in zip((first, second), expected, strict=True):
+        (line,) = re.findall(r"^Done: (.*)\.$", printed, re.MULTILINE)
+        found = re.findall(r"(\d+) files? in ([^,]+)", line)
+        assert {folder: int(count) for count, folder in found} == made
+        assert all(Path(smoked.folder, folder).is_dir() for _, folder in found)
