@@ -58,6 +58,11 @@ class General(Section):
         return self
 
 
+for _name in ("ridge", "buckling", "accuracy"):  # the workflow has rules of their own for these
+    if _name not in studies.STUDIES:
+        raise ValueError(
+            f"STUDIES in fiberweb/studies/__init__.py lacks {_name!r}, which the workflow needs"
+        )
 _SECTIONS = {name: studies.load(name).SECTION for name in studies.STUDIES}
 Config = create_model(
     "Config",

@@ -23,8 +23,21 @@ STUDIES = (
 
 
 def load(name: str) -> ModuleType:
-    """The module of a study."""
-    return import_module(f"fiberweb.studies.{name}")
+    """The module of a study.
+
+    Raises:
+        ValueError: it has no folder.
+    """
+    module = f"fiberweb.studies.{name}"
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise
+        raise ValueError(
+            f"STUDIES in fiberweb/studies/__init__.py lists {name!r}, but there is no folder "
+            f"fiberweb/studies/{name}"
+        ) from None
 
 
 def setups(name: str) -> tuple[str, ...]:

@@ -39,6 +39,15 @@ class Tree:
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout + done.stderr
 
+    def refused(self, *arguments):
+        """What a dry run that must fail prints."""
+        done = subprocess.run(
+            [sys.executable, "-m", "snakemake", *arguments, "--dry-run", "--cores", "1"],
+            cwd=self.folder, env=self.environment, capture_output=True, text=True,
+        )  # fmt: skip
+        assert done.returncode != 0, done.stdout + done.stderr
+        return done.stdout + done.stderr
+
     def jobs(self, *arguments):
         """Count of jobs by rule; {} if there is nothing to do."""
         printed = self.snakemake(*arguments)

@@ -234,7 +234,7 @@ def test_two_scenes_have_two_names(n, seeds):
 
 def test_one_name_for_two_scenes_is_refused(monkeypatch):
     monkeypatch.setattr("fiberweb.runs.DIGITS", 1)
-    with pytest.raises(ValueError, match="is the name of two scenes, .* and .*: change") as caught:
+    with pytest.raises(ValueError, match=r"is the name of two scenes, .* and .*: change") as caught:
         run_table(load({"robustness": {"n": [4], "seed": list(range(1, 18))}}))
     assert is_one_sentence(str(caught.value))
 

@@ -88,6 +88,29 @@ def test_a_figure_behind_the_checkpoint_waits_for_it(tree):
     assert (planned["simulate"], planned["ridge_best"]) == (4, 1)  # the ridge's runs only
 
 
+def test_a_misspelt_table_of_a_figure_is_named(tree):
+    study = tree.folder / "fiberweb/studies/narma/__init__.py"
+    text = study.read_text()
+    study.write_text(text.replace('draw", tuple(TABLES)', 'draw", ("narma.cvs",)'))
+    try:
+        printed = tree.refused("narma")
+    finally:
+        study.write_text(text)
+    assert "no study makes the table narma.cvs" in printed and "'narma.csv'" in printed
+
+
+def test_a_study_that_the_workflow_needs_is_named(tree):
+    registry = tree.folder / "fiberweb/studies/__init__.py"
+    text = registry.read_text()
+    for name in ("ridge", "buckling", "accuracy"):
+        registry.write_text(text.replace(f'    "{name}",\n', ""))
+        try:
+            printed = tree.refused("topology")
+        finally:
+            registry.write_text(text)
+        assert f"fiberweb/studies/__init__.py lacks '{name}'" in printed
+
+
 def test_lint(tree):
     assert "in a good condition" in tree.snakemake("--lint")
 

@@ -40,7 +40,8 @@ def made():
         for job in finished
         for file in job.output
     )
-    return ", ".join(f"{count} files in {folder}" for folder, count in sorted(folders.items()))
+    counts = [(f"{n} file{'s' * (n > 1)}", folder) for folder, n in sorted(folders.items())]
+    return ", ".join(f"{files} in {folder}" for files, folder in counts)
 
 
 def response(run):
