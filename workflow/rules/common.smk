@@ -15,6 +15,8 @@ from fiberweb.runs import check, run_table, runs
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# a notebook sets its own, without which matplotlib cannot even be imported elsewhere
+os.environ["MPLBACKEND"] = "agg"
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 
