@@ -109,7 +109,7 @@ WRONG = {
     "scene misspelt": (lambda: Scene(hatch(), tensoin=0.1), ["tensoin = 0.1", "'tension'"]),
     "scene array": (lambda: Scene(hatch(), force=np.ones(2)), ["force = [1.0, 1.0]", "number"]),
     "scene seed": (lambda: Scene(hatch(), seed=2**32), ["seed = 4294967296", "4294967295"]),
-    "simulate a network": (lambda: simulate(hatch()), ["scene = Network(...)", "make one with Scene"]),
+    "simulate a network": (lambda: simulate(hatch()), ["scene = Network(...)", "Scene("]),
     "simulate misspelt": (lambda: simulate(SHORT, acuracy="fine"), ["acuracy = ", "'accuracy'"]),
     "accuracy number": (lambda: simulate(SHORT, 4), ["accuracy = 4", "draft, standard"]),
     "accuracy list": (lambda: simulate(SHORT, ["fine"]), ["accuracy = ['fine']", "draft"]),

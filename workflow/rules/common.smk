@@ -11,6 +11,7 @@ from snakemake.exceptions import WorkflowError
 
 from fiberweb import source, studies
 from fiberweb.config import check_folders, load
+from fiberweb.layers import check_keys, typed
 from fiberweb.runs import check, run_table, runs
 
 # jobs run side by side, and sums in another order by more threads would give other bits
@@ -88,7 +89,9 @@ TABLES = studies.makers("TABLES")
 FIGURES = studies.makers("FIGURES")
 
 try:
-    CONFIG = load(config)
+    for path in workflow.configfiles:
+        check_keys(path)  # Snakemake read them, and kept the last of two
+    CONFIG = load(config, typed(workflow.config_settings.config))
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
     if workflow.is_main_process:  # a job on a cluster need not check again
