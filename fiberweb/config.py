@@ -8,6 +8,7 @@ Defaults are the paper's. What is generated from the models is in `fiberweb.tool
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import product
@@ -20,6 +21,7 @@ from pydantic import BeforeValidator, ValidationError, create_model, model_valid
 from fiberweb import studies
 from fiberweb.errors import sentence
 from fiberweb.folders import folder, missing_disk
+from fiberweb.layers import is_number, overlay, read
 from fiberweb.sections import (
     NumericsSection,
     SceneSection,
@@ -107,7 +109,7 @@ def load(*layers: Mapping | str | Path) -> Config:
     """
     values: dict = {}
     for layer in layers:
-        values = _overlay(values, layer if isinstance(layer, Mapping) else _read(layer))
+        values = overlay(values, layer if isinstance(layer, Mapping) else read(layer))
     try:
         return Config.model_validate(values)
     except ValidationError as error:
@@ -139,25 +141,6 @@ def check_folders(config: Config) -> None:
         )
 
 
-def _read(path: str | Path) -> Mapping:
-    import yaml
-
-    values = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    if values is None:
-        return {}
-    if not isinstance(values, Mapping):
-        raise ValueError(f"{path} holds {values!r}: a config is a group of keys")
-    return values
-
-
-def _overlay(below: Mapping, above: Mapping) -> dict:
-    merged = dict(below)
-    for name, value in above.items():
-        both = isinstance(value, Mapping) and isinstance(merged.get(name), Mapping)
-        merged[name] = _overlay(merged[name], value) if both else value
-    return merged
-
-
 def _explain(error: ValidationError) -> str:
     """The first problem as one sentence, with the meaning and unit of the key."""
     problem = error.errors()[0]
@@ -165,16 +148,20 @@ def _explain(error: ValidationError) -> str:
         return str(problem["ctx"]["error"])
     path = [part for part in problem["loc"] if isinstance(part, str)]
     if problem["type"] == "extra_forbidden":
-        return sentence(error, known=_look_up(path[:-1])[0].model_fields)
+        return sentence(error, known=_look_up(path[:-1])[0].model_fields) + _spelling(path)
     section, field = _look_up(path)
     if section is not None:
         keys = ", ".join(section.model_fields)
-        return f"{'.'.join(path)} = {problem['input']!r}: this is a group of keys ({keys})"
+        name, first = ".".join(path), next(iter(section.model_fields))
+        return (
+            f"{name} = {problem['input']!r}: this is a group of keys ({keys}), given as "
+            f"{_nested([*path, first])}"
+        )
     text = sentence(error)
     if problem["type"] != "literal_error":  # its message says all
         about = [field.description, field.json_schema_extra["unit"]]
         text += f" ({'; '.join(filter(None, about))})"
-    if isinstance(problem["input"], str) and _is_number(problem["input"]):
+    if isinstance(problem["input"], str) and is_number(problem["input"]):
         text += "; write numbers without quotes, and exponents as in 1.0e+8"
     return text
 
@@ -189,9 +176,18 @@ def _look_up(path: list[str]):
     return (section, None) if is_section else (None, field)
 
 
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+def _spelling(path: list[str]) -> str:
+    """What to say of an unknown key that joins names of several, or a name and a value."""
+    *above, last = path
+    if ":" in last and above:
+        return f"; put a blank after the colon, {last.replace(':', ': ', 1)}"
+    names = [name for name in re.split(r"[.:]", last) if name]
+    return f"; a key in a group is given as {_nested([*above, *names])}" if names[1:] else ""
+
+
+def _nested(path: list[str]) -> str:
+    """How a key of a group is written, in a file and on the command line."""
+    value = "..."
+    for name in reversed(path[1:]):
+        value = f"{{{name}: {value}}}"
+    return f"{path[0]}: {value} in a file and --config '{path[0]}={value}' on the command line"

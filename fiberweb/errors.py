@@ -5,12 +5,12 @@ from __future__ import annotations
 from difflib import get_close_matches
 
 
-def unknown_key(key: str, known, where: str = "") -> str:
+def unknown_key(key: str, known, where: str = "", kind: str = "key") -> str:
     """The sentence for a key that does not exist, with the nearest one that does, or all."""
     near = get_close_matches(str(key), [str(k) for k in known], n=1)
     if not near:
-        return f"unknown key '{where}{key}': the valid keys are {', '.join(map(str, known))}"
-    return f"unknown key '{where}{key}': the nearest valid key is '{where}{near[0]}'"
+        return f"unknown {kind} '{where}{key}': the valid {kind}s are {', '.join(map(str, known))}"
+    return f"unknown {kind} '{where}{key}': the nearest valid {kind} is '{where}{near[0]}'"
 
 
 def sentence(error, where: str = "", known=()) -> str:

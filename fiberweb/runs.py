@@ -9,7 +9,8 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -17,6 +18,8 @@ from fiberweb import studies
 from fiberweb.config import Config, lab
 from fiberweb.model.authors import SKIPPED_FRAMES
 from fiberweb.model.scene import Scene
+from fiberweb.scoring.limits import check_frames
+from fiberweb.simulation.plan import request
 
 DIGITS = 12  # of the hash in a name; with six, seeds 4697 and 4705 of one scene shared it
 # what a scene may have in place of its own without another limit of the step
@@ -64,28 +67,60 @@ class Run:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""
         from fiberweb.simulation.plan import plan
 
-        try:
+        with self._named():
             plan(self.scene, **self.numerics)
+
+    def check_request(self) -> None:
+        """`check` as far as that needs no mesh; and whether the recording can be scored."""
+        with self._named():
+            request(self.scene, **self.numerics)
+            check_frames(
+                self.scene.samples, self.scene.sample_rate, skip=self.scoring.get("skip", 0)
+            )
+
+    @property
+    def kind(self) -> tuple:
+        """What `check` can differ by, beyond `check_request`: the model.
+
+        Finding the limit of a step costs some 20 ms and depends on no force, so it is part of this
+        only if the config gives a step of its own. Whether fibres have elements enough for the
+        filter, or for the authors' mesh, depends on the network.
+        """
+        scene = self.scene
+        kind = (
+            scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension,
+            math.isinf(scene.crossing_stiffness), json.dumps(self.numerics),
+        )  # fmt: skip
+        if "time_step" in self.numerics and scene.setup == "described":
+            return (*kind, replace(scene, **AT_ANY).to_json())
+        if scene.setup == "published" or scene.filter_order:
+            return (*kind, scene.network.n, scene.network.length)
+        return kind
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        """Names this run in what is refused."""
+        try:
+            yield
         except ValueError as error:
             raise ValueError(f"{self.name}: {error}") from None
 
 
-def check(table: Iterable[Run]) -> None:
-    """`Run.check` for runs of a table, where it can differ from one to the next.
+def check(table: Iterable[Run], checked: set[tuple] | None = None) -> None:
+    """Raise ValueError, one sentence, if a run of a table cannot start or not be scored.
 
-    Finding the limit of a step costs some 20 ms and depends on no force, so it is done for every
-    network if the config gives a step of its own, and for one run of each kind of model otherwise.
+    Args:
+        table: runs.
+        checked: kinds of run that were found to start (`Run.kind`); those of the table are added.
     """
-    kinds = {}
+    checked = set() if checked is None else checked
+    table = list(table)
     for run in table:
-        scene = run.scene
-        model = (scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension)
-        kind = (*model, math.isinf(scene.crossing_stiffness), json.dumps(run.numerics))
-        if "time_step" in run.numerics and scene.setup == "described":
-            kind = (*kind, replace(scene, **AT_ANY).to_json())
-        kinds.setdefault(kind, run)
-    for run in kinds.values():
-        run.check()
+        run.check_request()
+    for run in table:
+        if run.kind not in checked:
+            run.check()
+            checked.add(run.kind)
 
 
 def runs(config: Config, study: str, setup: str, best: Mapping | None = None) -> list[Run]:

@@ -6,8 +6,10 @@ from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from fiberweb.arguments import plain
 from fiberweb.engines import ENGINES
-from fiberweb.model.scene import SETUPS, NotNegative, Positive, PositiveOrPinned, Scene
+from fiberweb.model.scene import SETUPS, NotNegative, Positive, PositiveOrPinned, Scene, Seed
+from fiberweb.scoring.limits import ALPHA
 from fiberweb.simulation.plan import ACCURACIES
 
 # sections of the paper
@@ -40,6 +42,11 @@ class Section(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _own_numbers(cls, values):
+        return plain(values)
+
 
 class SceneSection(Section):
     """Physics and recording of every run, in both setups."""
@@ -48,7 +55,7 @@ class SceneSection(Section):
         "tension", "constant pull along each fibre at its far end, F_t", "N", SIMULATION
     )
     duration: Positive = scene_key("duration", "length of the recording", "s", SIMULATION)
-    seed: Annotated[int, Field(ge=0)] = scene_key("seed", "seed of the input", "", SIMULATION)
+    seed: Seed = scene_key("seed", "seed of the input", "", SIMULATION)
     sample_rate: Positive = scene_key("sample_rate", "rate of the recording", "Hz", SIMULATION)
     drive_rate: Positive = scene_key(
         "drive_rate", "random knots of the input per second", "Hz", SIMULATION
@@ -122,4 +129,4 @@ class NumericsSection(Section):
 class ScoringSection(Section):
     """How capacities are computed."""
 
-    alpha: Positive = key(0.01, "ridge penalty", "", SIMULATION)
+    alpha: Positive = key(ALPHA, "ridge penalty", "", SIMULATION)

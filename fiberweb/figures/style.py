@@ -1,14 +1,15 @@
 """How every figure looks: a journal column, colour-blind-safe maps, the same bytes every time.
 
 Figures are `matplotlib.figure.Figure` objects made without pyplot: they need no display, write
-through the Agg backend, and nothing outside `applied` changes matplotlib's global state.
+through the Agg backend, and nothing outside `applied` changes matplotlib's global state, nor does
+the user's matplotlibrc change a figure.
 """
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib as mpl
@@ -66,9 +67,14 @@ RC = {
 }
 
 
-def applied() -> AbstractContextManager:
-    """Context in which a figure is made and saved with this style."""
-    return mpl.rc_context(RC)
+@contextmanager
+def applied() -> Iterator[None]:
+    """Context in which a figure is made and saved: matplotlib's own defaults and this style on
+    top, whatever a matplotlibrc says."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(RC)
+        yield
 
 
 def figure(width: float, height: float) -> Figure:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fiberweb.arguments import whole
 from fiberweb.model import authors_mesh
 from fiberweb.model.authors import ELEMENT
 from fiberweb.model.drive import spline
@@ -94,10 +95,8 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     Raises:
         ValueError: elements_per_section below 1, or sliding ends on slanted fibres.
     """
-    if elements_per_section is not None and elements_per_section < 1:
-        raise ValueError(
-            f"elements_per_section = {elements_per_section} must be a whole number of at least 1"
-        )
+    if elements_per_section is not None:
+        elements_per_section = whole("elements_per_section", elements_per_section, 1)
     network = scene.network
     if elements_per_section is not None:
         lines = cut(scene, network.spacing / elements_per_section)

@@ -11,6 +11,9 @@ from itertools import combinations
 
 import numpy as np
 
+from fiberweb.arguments import plain, positive, spelt, whole
+
+METRES = " must be a positive length in metres"
 COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
 
 
@@ -48,6 +51,11 @@ class Network:
         """Rest length of each fibre, shape (fibres,), m."""
         return np.linalg.norm(self.fibres[:, 1] - self.fibres[:, 0], axis=1)
 
+    @property
+    def readouts(self) -> int:
+        """How many there are: crossings, and the midpoints of all sections."""
+        return len(self.crossings) + sum(len(stations) + 1 for stations in self.stations)
+
     def sections(self, fibre: int) -> np.ndarray:
         """Ends of the sections of a fibre, from 0 to its length, shape (crossings + 2,), m."""
         inner = [distance for _, distance in self.stations[fibre]]
@@ -59,6 +67,7 @@ class Network:
         return spec | ({"diagonals": self.diagonals} if self.diagonals else {})
 
 
+@spelt
 def crosshatch(n: int, length: float | None = None, spacing: float | None = None) -> Network:
     """N + N fibres crossing at right angles, with end stubs as long as a section.
 
@@ -74,15 +83,16 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
     Raises:
         ValueError: n below 2, neither or both of length and spacing, or one not positive.
     """
-    _check_count("n", n, 2, "a crosshatch has at least 2 fibres in each direction")
+    n = whole("n", n, 2, ": a crosshatch has at least 2 fibres in each direction, a whole number")
     if (length is None) == (spacing is None):
         raise ValueError(
             f"crosshatch takes either length or spacing, not length = {length} and "
             f"spacing = {spacing}"
         )
-    name, value = ("length", length) if spacing is None else ("spacing", spacing)
-    _check_positive(name, value)
-    length = length if spacing is None else spacing * (n + 1)
+    if spacing is None:
+        length = positive("length", length, METRES)
+    else:
+        length = positive("spacing", spacing, METRES) * (n + 1)
     spacing = length / (n + 1)
     at = spacing * np.arange(1, n + 1)
     horizontal = [[[0.0, y], [length, y]] for y in at]
@@ -97,6 +107,7 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
     )  # fmt: skip
 
 
+@spelt
 def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     """Fibres along the diagonals of a regular N-gon, N even.
 
@@ -113,10 +124,10 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     Raises:
         ValueError: n odd or below 6, diameter not positive, or another word in diagonals.
     """
-    _check_count("n", n, 6, "a polygon has an even number of at least 6 vertices")
+    n = whole("n", n, 6, ": a polygon has an even number of at least 6 vertices")
     if n % 2:
         raise ValueError(f"n = {n}: a polygon has an even number of vertices, for its diameters")
-    _check_positive("diameter", diameter)
+    diameter, diagonals = positive("diameter", diameter, METRES), plain(diagonals)
     if diagonals not in ("all", "skip-one"):
         raise ValueError(f"diagonals = {diagonals!r} is not one of 'all', 'skip-one'")
     # vertex 0 at -x, so that the first diameter runs from left to right
@@ -172,13 +183,3 @@ def _cross(fibres: np.ndarray):
         on_fibre[b].setdefault(index, at_b * length[b])
     stations = tuple(tuple(sorted(f.items(), key=lambda item: item[1])) for f in on_fibre)
     return np.array(points), stations
-
-
-def _check_count(name: str, value, least: int, rule: str) -> None:
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
-        raise ValueError(f"{name} = {value!r}: {rule}")
-
-
-def _check_positive(name: str, value) -> None:
-    if isinstance(value, (str, bool)) or not 0 < value < np.inf:
-        raise ValueError(f"{name} = {value!r} must be a positive length in metres")

@@ -10,6 +10,7 @@ from typing import Annotated, Literal, get_type_hints
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
+from fiberweb.arguments import plain, shown, spelt
 from fiberweb.errors import sentence
 from fiberweb.model import authors, buckling
 from fiberweb.model.network import Network, from_spec
@@ -17,6 +18,7 @@ from fiberweb.model.network import Network, from_spec
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
+Seed = Annotated[int, Field(ge=0, le=2**32 - 1, strict=True)]  # what numpy's generator takes
 
 # What each setup does where the scene leaves a field open. `described` is the paper's text; its
 # damping and crossings are unreported there, so these are the calibrated values. `published` is
@@ -29,6 +31,7 @@ SETUPS = {("described", topology): DESCRIBED for topology in authors.PHYSICS} | 
 }
 
 
+@spelt
 @dataclass(frozen=True)
 class Scene:
     """One run: network, material, crossings, ends, drive and recording, in SI units.
@@ -68,7 +71,7 @@ class Scene:
     force: Positive | None = None
     tension: NotNegative = 0.01
     duration: Positive = 100.0
-    seed: Annotated[int, Field(ge=0, strict=True)] = authors.SEED
+    seed: Seed = authors.SEED
     sample_rate: Positive = 250.0
     drive_rate: Positive = 5.0
     diameter: Positive = 2e-3
@@ -86,12 +89,12 @@ class Scene:
     def __post_init__(self):
         if not isinstance(self.network, Network):
             raise ValueError(
-                f"network = {self.network!r} is not a network; make one with crosshatch(...) "
+                f"network = {shown(self.network)} is not a network; make one with crosshatch(...) "
                 "or polygon(...)"
             )
         for name, adapter in _ADAPTERS.items():
             try:
-                value = adapter.validate_python(getattr(self, name))
+                value = adapter.validate_python(plain(getattr(self, name)))
             except ValidationError as error:
                 raise ValueError(sentence(error, name)) from None
             object.__setattr__(self, name, value)

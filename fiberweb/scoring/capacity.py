@@ -17,6 +17,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from fiberweb.model.readouts import AXES, as_signals
+from fiberweb.scoring import arguments
 from fiberweb.scoring.regression import Fit, Options, checked, fit_targets, mean_of
 
 if TYPE_CHECKING:
@@ -96,8 +97,7 @@ def score_arrays(
     """
     options = Options(**options)
     u, readouts = checked(u, readouts, sample_rate, options)
-    if orders < 1:
-        raise ValueError(f"orders = {orders} holds no Legendre polynomial; give 1 or more")
+    orders = arguments.check_orders(orders)
     horizon = round(options.horizon * sample_rate)
     orders, lags = np.arange(1, orders + 1), np.arange(horizon + 1)
     nonlinear, memory = fit_targets(u, readouts, orders, lags, horizon, options)
@@ -189,6 +189,8 @@ def score(
     """
     import xarray as xr  # slow to import, and arrays alone do not need it
 
+    arguments.check(response, scoring, options)
+    orders = arguments.check_orders(orders)
     scoring = scoring or own_scoring(response)
     chosen = Options(scoring, **options)
     rate = float(response.attrs["sample_rate"])

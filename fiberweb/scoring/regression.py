@@ -6,20 +6,22 @@ semantics of scikit-learn's `Ridge`, which is the oracle in the tests.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.linalg import LinAlgError, blas, cho_factor, cho_solve
 
+from fiberweb.arguments import positive, shown, spelt, true_or_false, whole
 from fiberweb.model.authors import SHUFFLE_SEED
+from fiberweb.scoring.limits import ALPHA, HORIZON, SPLIT, check_frames
+from fiberweb.scoring.limits import training_end as training_end
 
 SCORINGS = ("clean", "published")
 
 
+@spelt
 @dataclass(frozen=True)
 class Options:
     """How a run is scored. In both scorings u is scaled to [-1, 1] over the whole run.
@@ -34,27 +36,30 @@ class Options:
     """
 
     scoring: str = "clean"
-    alpha: float = 0.01  # penalty alpha |w|^2 against the SUM of squares, standardised readouts
-    horizon: float = 1.0  # longest recall lag, s
-    split: float = 0.75  # fraction of the frames trained on
+    alpha: float = ALPHA  # penalty alpha |w|^2 against the SUM of squares, standardised readouts
+    horizon: float = HORIZON  # longest recall lag, s
+    split: float = SPLIT  # fraction of the frames trained on
     skip: int = 0  # first frames dropped before anything else
     shuffle: bool = False  # published only: split nonlinear targets at random, which flatters C_nl
 
     def __post_init__(self):
-        if self.scoring not in SCORINGS:
+        if self.scoring not in list(SCORINGS):
             valid = " or ".join(map(repr, SCORINGS))
-            raise ValueError(f"scoring = {self.scoring!r} is unknown; use {valid}")
-        for key in ("alpha", "horizon"):
-            value = getattr(self, key)
-            number = isinstance(value, Real) and not isinstance(value, bool)
-            if not (number and 0 < value < math.inf):
-                raise ValueError(f"{key} = {value!r} is not usable; give a finite number above 0")
-        if not 0 < self.split < 1:
-            raise ValueError(f"split = {self.split!r} is not usable; give a fraction, 0 to 1")
-        if self.skip < 0:
-            raise ValueError(
-                f"skip = {self.skip!r} is negative; give a number of frames, 0 or more"
-            )
+            raise ValueError(f"scoring = {shown(self.scoring)} is unknown; use {valid}")
+        above = " is not usable; give a finite number above 0"
+        fraction = " is not usable; give a fraction, 0 to 1"
+        frames = " is negative or no whole number; give a number of frames, 0 or more"
+        values = {
+            "alpha": positive("alpha", self.alpha, above),
+            "horizon": positive("horizon", self.horizon, above),
+            "split": positive("split", self.split, fraction),
+            "skip": whole("skip", self.skip, 0, frames),
+            "shuffle": true_or_false("shuffle", self.shuffle),
+        }
+        if not values["split"] < 1:
+            raise ValueError(f"split = {shown(self.split)}{fraction}")
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
         if self.shuffle and self.scoring != "published":
             raise ValueError("shuffle = True needs scoring = 'published'; 'clean' never shuffles")
 
@@ -105,26 +110,15 @@ def targets(u: np.ndarray, orders: Sequence[int], lags: Sequence[int]) -> np.nda
 
 def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
     """u (T - skip,) and readouts (T - skip, p) as floats; ValueError says what is wrong."""
-    if not 0 < sample_rate < math.inf:
-        raise ValueError(f"sample_rate = {sample_rate!r} is not usable; give a rate above 0 Hz")
+    sample_rate = positive("sample_rate", sample_rate, " is not usable; give a rate above 0 Hz")
     u, readouts = np.asarray(u, dtype=float), np.asarray(readouts, dtype=float)
     if u.ndim != 1 or readouts.ndim != 2 or len(u) != len(readouts) or not readouts.shape[1]:
         raise ValueError(
             f"u has shape {u.shape} and readouts {readouts.shape}; "
             "give (T,) and (T, p) with the same number of frames T, and p at least 1"
         )
-    horizon, skip = options.horizon, options.skip
-    if round(horizon * sample_rate) < 1:
-        raise ValueError(
-            f"horizon = {horizon:g} s is shorter than a frame; give at least {1 / sample_rate:g} s"
-        )
-    # Two horizons: at the longest lag, as many frames are left to split as the lag took away.
-    if len(u) - skip < 2 * horizon * sample_rate:
-        raise ValueError(
-            f"duration = {len(u) / sample_rate:g} s is too short for a recall horizon of "
-            f"{horizon:g} s and a split beyond it; record at least "
-            f"{2 * horizon + skip / sample_rate:g} s"
-        )
+    skip = options.skip
+    check_frames(len(u), sample_rate, options.horizon, options.split, skip)
     u, readouts = u[skip:], readouts[skip:]
     finite = np.isfinite(readouts)
     if not finite.all():
@@ -163,11 +157,6 @@ def standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
     still = deviation <= len(x) * np.finfo(float).eps * np.abs(mean)
     x /= np.where(still, np.inf, deviation)
     return x
-
-
-def training_end(start: int, frames: int, split: float) -> int:
-    """First test frame of a split of frames [start, frames), whose test part rounds up."""
-    return start + math.floor(split * (frames - start) + 1e-9)  # 0.57 * 100 falls short of 57
 
 
 def _fit(x, target, starts, options) -> Fit:

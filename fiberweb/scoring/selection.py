@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import svdvals
 
+from fiberweb.scoring.limits import ALPHA
 from fiberweb.scoring.regression import (
     Options,
     checked,
@@ -53,7 +54,7 @@ def effective_rank(readouts: np.ndarray) -> float:
 
 
 def forward(
-    u: np.ndarray, readouts: np.ndarray, sample_rate: float, target: str, alpha: float = 0.01
+    u: np.ndarray, readouts: np.ndarray, sample_rate: float, target: str, alpha: float = ALPHA
 ) -> Selection:
     """Choose signals one by one for C_nl or for C_m, on the training part alone.
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from fiberweb.model.scene import Scene
-from fiberweb.scoring import capacity
+from fiberweb.scoring import arguments, capacity
+from fiberweb.scoring.limits import ALPHA
 from fiberweb.simulation import dataset
 from fiberweb.tables import ordered
 
@@ -90,7 +91,7 @@ def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
 
 
 def baselines(
-    response: xr.Dataset, alpha: float = 0.01, scoring: str | None = None, **options: object
+    response: xr.Dataset, alpha: float = ALPHA, scoring: str | None = None, **options: object
 ) -> pd.DataFrame:
     """Input-only baselines: what readouts made of the input alone score.
 
@@ -102,6 +103,7 @@ def baselines(
     Returns:
         A frame of `BASELINE_COLUMNS`, readout being "u", "derivatives" or "powers".
     """
+    arguments.check_input(response, scoring, options)
     scoring = scoring or capacity.own_scoring(response)
     sample_rate = float(response.attrs["sample_rate"])
     u = response["input"].values  # whole even in an unstable run

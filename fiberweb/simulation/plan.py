@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from fiberweb.arguments import positive, shown, spelt, true_or_false, whole
 from fiberweb.engines import ENGINES, load
 from fiberweb.errors import unknown_key
 from fiberweb.model.authors import STEP
 from fiberweb.model.scene import Scene
+from fiberweb.simulation import memory
 
 if TYPE_CHECKING:
     from fiberweb.engines.base import Numerics
@@ -26,6 +29,16 @@ SAFETY_BY_STRAIN = {1e-3: 0.7, 1e-2: 0.4}
 # Spacing in diameters below which leaving out shear costs more than some 0.2 of the trajectories.
 # Source: model_ladder.csv has 0.0023 at 50 diameters, and it grows as the inverse square.
 MIN_SLENDERNESS = 5.0
+MOST_STEPS = 1e12  # of a run: at a microsecond for each, eleven days
+
+
+class Request(NamedTuple):
+    """What is asked for of a scene: as for `Plan`, and whether a step above the limit is wanted."""
+
+    engine: str
+    elements_per_section: int | None
+    time_step: float | None
+    force_time_step: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +79,7 @@ class Plan:
         return Numerics(self.engine, self.elements_per_section, step)
 
 
+@spelt
 def plan(
     scene: Scene,
     accuracy: str | None = None,
@@ -93,8 +107,67 @@ def plan(
     """
     from fiberweb.model.mesh import build
 
-    _check(scene, accuracy, engine, elements_per_section, time_step)
-    published = scene.setup == "published"
+    asked = request(
+        scene,
+        accuracy,
+        engine=engine,
+        elements_per_section=elements_per_section,
+        time_step=time_step,
+        force_time_step=force_time_step,
+    )
+    mesh = build(scene, asked.elements_per_section)
+    load(asked.engine).refuse(mesh)
+    planned = Plan(mesh, asked.engine, asked.elements_per_section, asked.time_step, accuracy)
+    if scene.setup == "published" and time_step is None:
+        return planned
+    step = planned.numerics.time_step
+    if not 0 < step < math.inf:
+        raise ValueError(
+            f"diameter = {scene.diameter:g} m, youngs_modulus = {scene.youngs_modulus:g} Pa and "
+            f"density = {scene.density:g} kg/m^3 give fibres without a stable time step; take "
+            "values of a material"
+        )
+    _refuse_endless(scene, step)
+    if not (asked.force_time_step or scene.filter_order) and step > planned.limit:
+        raise ValueError(
+            f"time_step = {step:.3g} s is above the stability limit of {planned.limit:.3g} s of "
+            f"the {asked.engine} engine on this mesh; take a smaller one or leave it out"
+        )
+    return planned
+
+
+@spelt
+def request(
+    scene: Scene,
+    accuracy: str | None = None,
+    *,
+    engine: str | None = None,
+    elements_per_section: int | None = None,
+    time_step: float | None = None,
+    force_time_step: bool = False,
+) -> Request:
+    """What is asked for, chosen and refused as far as that needs no mesh; see `plan`.
+
+    It takes some microseconds, so that every run of a config can be asked for before one starts.
+    """
+    if not isinstance(scene, Scene):
+        raise ValueError(
+            f"scene = {shown(scene)} is not a scene; make one with Scene(crosshatch(...))"
+        )
+    given = {"engine": engine, "elements_per_section": elements_per_section, "time_step": time_step}
+    _check_accuracy(scene, accuracy, given)
+    if engine is not None and engine not in [*ENGINES]:
+        raise ValueError(f"engine = {shown(engine)}: {unknown_key(engine, ENGINES, kind='engine')}")
+    if elements_per_section is not None:
+        elements_per_section = whole("elements_per_section", elements_per_section, 1)
+    if time_step is not None:
+        time_step = positive("time_step", time_step, " must be a positive number of seconds")
+        _refuse_endless(scene, time_step)
+    if scene.tension >= scene.axial_stiffness:
+        raise ValueError(
+            f"tension = {scene.tension:g} N: no fibre holds a pull of EA = "
+            f"{scene.axial_stiffness:g} N or more, so take a smaller one"
+        )
     chosen = engine or DEFAULT_ENGINE[scene.setup]
     if engine is None and stubby(scene) and not load(chosen).MODELS_SHEAR:
         other = next(name for name in ENGINES if load(name).MODELS_SHEAR)
@@ -103,20 +176,13 @@ def plan(
             f"diameters of {scene.diameter:g} m shears, which the {chosen} engine leaves out; "
             f"take a longer one, or engine = {other!r}"
         )
-    if not published and elements_per_section is None:
+    if scene.setup == "published":
+        time_step = STEP if time_step is None else time_step
+    elif elements_per_section is None:
         elements_per_section = ACCURACIES[accuracy or "standard"]
-    mesh = build(scene, elements_per_section)
-    load(chosen).refuse(mesh)
-    if published and time_step is None:
-        return Plan(mesh, chosen, elements_per_section, STEP)
-    planned = Plan(mesh, chosen, elements_per_section, time_step, accuracy)
-    step = planned.numerics.time_step
-    if not (force_time_step or scene.filter_order) and step > planned.limit:
-        raise ValueError(
-            f"time_step = {step:.3g} s is above the stability limit of {planned.limit:.3g} s of "
-            f"the {chosen} engine on this mesh; take a smaller one or leave it out"
-        )
-    return planned
+    memory.check(scene, elements_per_section)
+    forced = true_or_false("force_time_step", force_time_step)
+    return Request(chosen, elements_per_section, time_step, forced)
 
 
 def stubby(scene: Scene) -> bool:
@@ -134,30 +200,30 @@ def safety(scene: Scene) -> float:
     return min([SAFETY, *(share for least, share in SAFETY_BY_STRAIN.items() if strain >= least)])
 
 
-def _check(scene: Scene, accuracy, engine, elements_per_section, time_step) -> None:
-    """Refuse what can be refused without a mesh; see `plan`."""
-    if scene.tension >= scene.axial_stiffness:
+def _check_accuracy(scene: Scene, accuracy, given: dict) -> None:
+    """Refuse an accuracy that does not exist, or beside what it chooses."""
+    if accuracy is None:
+        return
+    if accuracy not in [*ACCURACIES]:
         raise ValueError(
-            f"tension = {scene.tension:g} N: no fibre holds a pull of EA = "
-            f"{scene.axial_stiffness:g} N or more, so take a smaller one"
+            f"accuracy = {shown(accuracy)} does not exist; choose one of {', '.join(ACCURACIES)}"
         )
-    if engine is not None and engine not in ENGINES:
-        raise ValueError(f"engine = {engine!r}: {unknown_key(engine, ENGINES)}")
-    if accuracy is not None:
-        if accuracy not in ACCURACIES:
+    if scene.setup == "published":
+        raise ValueError(
+            f"accuracy = {accuracy!r}: the published setup fixes its own mesh and step, so "
+            "leave the accuracy out"
+        )
+    for key, value in given.items():
+        if value is not None:
             raise ValueError(
-                f"accuracy = {accuracy!r} does not exist; choose one of {', '.join(ACCURACIES)}"
+                f"{key} = {shown(value)}: an accuracy chooses it, so give one or the other"
             )
-        if scene.setup == "published":
-            raise ValueError(
-                f"accuracy = {accuracy!r}: the published setup fixes its own mesh and step, so "
-                "leave the accuracy out"
-            )
-        given = {"engine": engine, "elements_per_section": elements_per_section}
-        for key, value in (given | {"time_step": time_step}).items():
-            if value is not None:
-                raise ValueError(
-                    f"{key} = {value!r}: an accuracy chooses it, so give one or the other"
-                )
-    if time_step is not None and not (isinstance(time_step, (int, float)) and time_step > 0):
-        raise ValueError(f"time_step = {time_step!r} must be a positive number of seconds")
+
+
+def _refuse_endless(scene: Scene, step: float) -> None:
+    """Refuse a run that no machine comes to the end of."""
+    if scene.duration > MOST_STEPS * step:
+        raise ValueError(
+            f"duration = {scene.duration:g} s takes {scene.duration / step:.1g} steps of "
+            f"{step:.3g} s, more than any machine gets through; take a shorter one, or larger steps"
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fiberweb.arguments import spelt
 from fiberweb.engines import load
 from fiberweb.model.scene import Scene
 from fiberweb.simulation.plan import Plan, plan
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@spelt
 def simulate(
     scene: Scene,
     accuracy: str | None = None,

@@ -23,8 +23,8 @@ from fiberweb.model.network import Network
 from fiberweb.model.network import crosshatch as _crosshatch
 from fiberweb.model.network import polygon as _polygon
 from fiberweb.model.scene import Scene
+from fiberweb.scoring.limits import HORIZON as HORIZON
 
-HORIZON = 1.0  # s, longest recall lag
 CHOICES = ("best_c_nl", "best_c_m")
 
 crosshatch, polygon = cache(_crosshatch), cache(_polygon)  # studies ask for the same ones

@@ -51,7 +51,7 @@ def _range(schema: dict) -> str:
         return ", ".join(map(str, schema["enum"]))
     if schema["type"] == "array":
         return f"list: {_range(schema['items'])}"
-    bounds = {"exclusiveMinimum": "> {:g}", "minimum": "≥ {:g}", "maximum": "≤ {:g}"}
+    bounds = {"exclusiveMinimum": "> {:.10g}", "minimum": "≥ {:.10g}", "maximum": "≤ {:.10g}"}
     parts = ["even"] if schema.get("multipleOf") == 2 else []
     parts += ["whole"] if schema["type"] == "integer" and not parts else []
     parts += [text.format(schema[name]) for name, text in bounds.items() if name in schema]

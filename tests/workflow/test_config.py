@@ -2,6 +2,7 @@
 
 import inspect
 import os
+import re
 import subprocess
 import sys
 from itertools import product
@@ -29,6 +30,11 @@ SMOKE = ROOT / "config" / "smoke.yaml"
 BAD = {
     "unknown key": ({"scene": {"diametre": 2e-3}}, ["diametre", "diameter"]),
     "unknown section": ({"topolgy": {}}, ["topolgy", "topology"]),
+    "dotted key": (
+        {"scene.duration": 20.0},
+        ["'scene.duration'", "scene: {duration: ...}", "--config 'scene={duration: ...}'"],
+    ),
+    "no blank": ({"scene": {"duration:20": None}}, ["blank after the colon", "duration: 20"]),
     "negative diameter": (
         {"scene": {"diameter": -0.002}}, ["scene.diameter", "-0.002", "greater than 0", "m)"],
     ),
@@ -147,8 +153,9 @@ def test_a_tension_that_no_fibre_holds_is_found_in_any_study():
         ("scene: {tension: tight}", "scene.tension = 'tight'"),
         ("results: Snakefile/results", "results = 'Snakefile/results' cannot be written"),
         ("numerics: {accuracy: null, time_step: 1.0e-3}", "time_step = 0.001 s"),
+        ("scene: {duration: 20.0}\nscene: {tension: 1.0}", "gives scene twice, in lines 1 and 2"),
     ],
-    ids=["value", "folder", "time step"],
+    ids=["value", "folder", "time step", "given twice"],
 )
 def test_the_workflow_prints_the_sentence_and_nothing_else(tmp_path, overlay, words):
     (tmp_path / "bad.yaml").write_text(overlay)
@@ -161,6 +168,22 @@ def test_the_workflow_prints_the_sentence_and_nothing_else(tmp_path, overlay, wo
     printed = [row for row in done.stderr.splitlines() if not row.startswith(snakemakes_own)]
     assert done.returncode != 0
     assert len(printed) == 1 and words in printed[0], done.stderr
+
+
+def test_a_nested_key_on_the_command_line_is_laid_over_its_section(tmp_path):
+    (tmp_path / "my.yaml").write_text("topology: {crosshatch: [2, 3], polygon: [6]}")
+    given = ["scene={duration: 20, tension: 2e-2}", "topology={polygon: []}", "scoring={alpha: .5}"]
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake", "topology", "-n", "--cores", "1",
+         "--configfile", str(tmp_path / "my.yaml"), "--config", f"results={tmp_path}", *given],
+        cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+    )  # fmt: skip
+    expected = load({
+        "scene": {"duration": 20.0, "tension": 0.02},
+        "topology": {"crosshatch": [2, 3], "polygon": []},
+    })  # fmt: skip
+    simulated = set(re.findall(r"Simulating (\S+)", done.stdout + done.stderr))
+    assert simulated == {run.name for run in runs(expected, "topology", "described")}
 
 
 def test_the_committed_config_is_the_models_defaults():

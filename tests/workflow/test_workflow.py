@@ -312,3 +312,17 @@ def test_the_second_setup_leaves_the_first_alone(smoked):
     assert set(pd.read_csv(published / "topology.csv")["setup"]) == {"published"}
     for study in ("topology", "ridge", "size", "pretension", "features"):
         assert (smoked.folder / "out" / "figures" / f"{study}-published.png").exists()
+
+
+def test_neither_a_matplotlibrc_nor_a_notebooks_backend_changes_a_picture(
+    smoked, tmp_path, monkeypatch
+):
+    drawn = [smoked.folder / "out" / "figures" / f"noise.{end}" for end in ("png", "pdf")]
+    before = [path.read_bytes() for path in drawn]
+    (tmp_path / "matplotlibrc").write_text("text.usetex: True\nfont.size: 30\n")
+    monkeypatch.setitem(smoked.environment, "MATPLOTLIBRC", str(tmp_path / "matplotlibrc"))
+    backend = "module://matplotlib_inline.backend_inline"
+    monkeypatch.setitem(smoked.environment, "MPLBACKEND", backend)
+    printed = smoked.snakemake("out/figures/noise.png", "--force", *SMOKE)
+    assert "Drawing out/figures/noise.png" in printed
+    assert [path.read_bytes() for path in drawn] == before

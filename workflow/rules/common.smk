@@ -13,11 +13,14 @@ from fiberweb.config import check_folders, load
 from fiberweb.errors import unknown_key
 from fiberweb.provenance import add_call
 from fiberweb.recipes import BEST, Recipes, code, digest_of
+from fiberweb.layers import check_keys, typed
 from fiberweb.runs import check, run_table, runs
 from fiberweb.written import cut_short
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# a notebook sets its own, without which matplotlib cannot even be imported elsewhere
+os.environ["MPLBACKEND"] = "agg"
 SUFFIXES = {"described": "", "published": "-published"}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 
@@ -93,7 +96,9 @@ TABLES = studies.makers("TABLES")
 FIGURES = studies.makers("FIGURES")
 
 try:
-    CONFIG = load(config)
+    for path in workflow.configfiles:
+        check_keys(path)  # Snakemake read them, and kept the last of two
+    CONFIG = load(config, typed(workflow.config_settings.config))
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
     RECIPES = Recipes(CONFIG, RUNS)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import product
-from typing import Annotated
-
-from pydantic import Field
 
 from fiberweb.model.authors import SEED
+from fiberweb.model.scene import Seed
 from fiberweb.sections import Positive, Section, Size, Some, key
 from fiberweb.studies.base import (
     Figure,
@@ -26,7 +24,7 @@ class RobustnessSection(Section):
 
     n: Some[Size] = key([4, 8], "sizes of the crosshatch, N")
     length: Positive = key(0.5, "fibre length", "m")
-    seed: Some[Annotated[int, Field(ge=0)]] = key([SEED, 1, 2, 3, 4], "seeds of the input")
+    seed: Some[Seed] = key([SEED, 1, 2, 3, 4], "seeds of the input")
     alpha: Some[Positive] = key([1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0], "ridge penalties")
 
 
