@@ -33,7 +33,7 @@ class State(NamedTuple):
 class Rods(NamedTuple):
     """What the passes multiply with: over nodes, then over elements, then the same everywhere."""
 
-    kick_x: np.ndarray  # step over mass
+    kick_x: np.ndarray  # velocity that a force gives in a step, before it decays, s/kg
     kick_y: np.ndarray
     bend: np.ndarray  # EI over the span of a node, N m
     half_over_voronoi: np.ndarray  # 1/m
@@ -45,6 +45,7 @@ class Rods(NamedTuple):
     shear: float  # alpha_c G A, N
     over_inertia: float  # 1 / (rho I), m / kg
     decay: float  # of a free velocity over a step
+    spin_kick: float  # what an angular acceleration gives in a step, before it decays, s
 
 
 class Spin(NamedTuple):
@@ -152,7 +153,7 @@ def drift_pass(x, v, step):
 
 @kernel
 def spin_pass(
-    omega, alpha, couple0, couple1, length, over_edge, decay, stretched, over_inertia, step
+    omega, alpha, couple0, couple1, length, over_edge, decay, stretched, over_inertia, kick
 ):
     """Kick and damp the angular velocities; the damper's power of dilatation as a series."""
     for i in range(omega.shape[0]):
@@ -160,7 +161,7 @@ def spin_pass(
         bending = (couple1[i] - couple0[i]) * (e * over_edge[i] * over_inertia)
         a = stretched[i] * (e - 1.0)
         less = decay[i] * (1.0 - a * (1.0 - a * (0.5 - a * (1.0 / 6.0))))
-        omega[i] = (omega[i] + step * (alpha[i] + bending)) * less
+        omega[i] = (omega[i] + kick * (alpha[i] + bending)) * less
 
 
 @kernel

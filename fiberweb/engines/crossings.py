@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from fiberweb.engines.jit import kernel
 from fiberweb.engines.layout import Interleaving, Layout
+from fiberweb.engines.stepping import damped_kick
 from fiberweb.model.mesh import Mesh
 
 
@@ -51,13 +52,13 @@ def joint_operators(
 
     With v the velocities before the kick, v* after the kick of all but the crossing, and x the
     positions, the step gives v' = P v + Q v* + S x, where for the damper matrix N, spring
-    matrix K (graph Laplacians) and lumped masses M
+    matrix K (graph Laplacians), lumped masses M and the damping g of all velocities
 
-        E = exp(-h M^-1 N),   Phi = (h M^-1 N)^-1 (1 - E),
-        P = E - Phi,   Q = Phi,   S = -h Phi M^-1 K,
+        A = g + M^-1 N,   E = exp(-h A),   Phi = A^-1 (1 - E),   phi = (1 - exp(-h g)) / g,
+        Q = Phi / phi,   P = E - exp(-h g) Q,   S = -Phi M^-1 K:
 
-    (times the decay of free velocities): exact for forces constant over the step. Nodes that
-    are one point get the mass-weighted mean of v*.
+    exact for forces constant over the step, of which v* = exp(-h g) v + phi M^-1 f has had its
+    share phi (`damped_kick`). Nodes that are one point get the mass-weighted mean of v*.
     """
     pairs, others = [], []
     for nodes, spring, damper in joint_groups(mesh, layout):
@@ -107,10 +108,10 @@ def _pair_operators(mass, k, nu, step, rate) -> tuple[float, float, float]:
     if np.isinf(k):
         return 0.0, 0.0, 0.0
     over_mass = (1.0 / mass).sum()
-    z = step * nu * over_mass
-    phi = -np.expm1(-z) / z if z > 0.0 else 1.0
-    kick = -step * np.exp(-0.5 * rate * step) * phi * k * over_mass
-    return np.exp(-rate * step) * (np.exp(-z) - phi), phi, kick
+    whole = rate + nu * over_mass
+    kick = damped_kick(whole, step)
+    share = kick / damped_kick(rate, step)
+    return np.exp(-whole * step) - np.exp(-rate * step) * share, share, -kick * k * over_mass
 
 
 def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
@@ -119,13 +120,15 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
     if not np.isfinite(spring).all():
         mean = np.tile(mass / mass.sum(), (count, 1))
         return np.array([np.zeros((count, count)), mean, np.zeros((count, count))])
-    damping = step * damper / mass[:, None]
-    # the phi function from one exponential of an augmented matrix: no division by zero rates
+    damping = rate * np.eye(count) + damper / mass[:, None]
+    # Phi from one exponential of an augmented matrix: no division by zero rates
     augmented = np.block([[-damping, np.eye(count)], [np.zeros((count, 2 * count))]])
-    exponential = expm(augmented)
-    decayed, phi = exponential[:count, :count], exponential[:count, count:]
-    kick = -step * np.exp(-0.5 * rate * step) * phi @ (spring / mass[:, None])
-    return np.array([np.exp(-rate * step) * (decayed - phi), phi, kick])
+    exponential = expm(step * augmented)
+    decayed, kick = exponential[:count, :count], exponential[:count, count:]
+    share = kick / damped_kick(rate, step)
+    return np.array(
+        [decayed - np.exp(-rate * step) * share, share, -kick @ (spring / mass[:, None])]
+    )
 
 
 @kernel

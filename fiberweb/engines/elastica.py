@@ -16,8 +16,8 @@ from elastica._rotations import _inv_rotate
 from numba import njit
 
 from fiberweb.engines.base import RUNAWAY, Numerics, Recording, fitted_step, readout_arrays
+from fiberweb.engines.cosserat import kick_before_decay, refuse
 from fiberweb.engines.cosserat import largest_step as largest_step
-from fiberweb.engines.cosserat import refuse
 from fiberweb.engines.stepping import drive_value
 from fiberweb.model.mesh import Mesh
 
@@ -74,6 +74,23 @@ def _wall_torque(pair, directors, stiffness, dilatation, torques):
         torques[i, 0] -= stiffness[i] * turn[i, 0] / e**3
 
 
+class ExactDamper(ea.DamperBase):
+    """The decay of all velocities, exact for constant forces: what PyElastica's kick by the step
+    lacks of `cosserat.kick_before_decay` is added before it."""
+
+    def __init__(self, rate, step, missing, free_nodes, free_elements, **kwargs):
+        super().__init__(**kwargs)
+        self.decay = np.exp(-rate * step)
+        self.of_nodes, self.of_elements = missing * free_nodes, missing * free_elements
+
+    def dampen_rates(self, system, time=0.0):
+        """Correct and damp; constraints have acted already, so what they hold is left alone."""
+        system.velocity_collection += self.of_nodes * system.acceleration_collection
+        system.omega_collection += self.of_elements * system.alpha_collection
+        system.velocity_collection *= self.decay
+        system.omega_collection *= self.decay
+
+
 def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recording:
     """Integrate a mesh with PyElastica.
 
@@ -128,7 +145,7 @@ def assemble(mesh: Mesh, numerics: Numerics):
     for fibre, rod in enumerate(rods):
         _hold(simulator, mesh, fibre, rod)
         _pull(simulator, mesh, fibre, rod)
-        _damp(simulator, mesh, rod, step)
+        _damp(simulator, mesh, fibre, rod, step)
     for rod, nodes in _driven(mesh, rods):
         load = mesh.load[mesh.first[rods.index(rod)] + nodes]
         simulator.add_forcing_to(rod).using(
@@ -195,10 +212,23 @@ def _pull(simulator, mesh: Mesh, fibre: int, rod) -> None:
         )
 
 
-def _damp(simulator, mesh: Mesh, rod, step: float) -> None:
+def _damp(simulator, mesh: Mesh, fibre: int, rod, step: float) -> None:
     scene = mesh.scene
-    kind = "damping_constant" if scene.setup == "published" else "uniform_damping_constant"
-    simulator.dampen(rod).using(ea.AnalyticalLinearDamper, time_step=step, **{kind: scene.damping})
+    if scene.setup == "published":
+        simulator.dampen(rod).using(
+            ea.AnalyticalLinearDamper, time_step=step, damping_constant=scene.damping
+        )
+    else:
+        held = mesh.held[mesh.first[fibre] : mesh.first[fibre + 1]]
+        free_nodes = 1.0 - np.column_stack([held, held.any(axis=1)]).T
+        free_elements = np.ones((3, rod.n_elems))
+        if not mesh.clamped[fibre]:
+            free_elements[:2, 0] = 0.0
+        simulator.dampen(rod).using(
+            ExactDamper, rate=scene.damping, step=step,
+            missing=kick_before_decay(scene, step) - step,
+            free_nodes=free_nodes, free_elements=free_elements,
+        )  # fmt: skip
     if scene.filter_order:
         simulator.dampen(rod).using(ea.LaplaceDissipationFilter, filter_order=scene.filter_order)
 

@@ -19,7 +19,8 @@ them. Stress is PyElastica's, EA (1 - l0 / l). Bending is fourth order in the el
 All is derived from one potential, so leapfrog (PyElastica's position Verlet with its half
 drifts joined) keeps energy. Crossings: spring and damper as an exact exponential of the
 damper over each step, so that they set no limit and a stiff damper slips at the speed that
-its force implies; an infinite stiffness makes the nodes one point.
+its force implies; an infinite stiffness makes the nodes one point. The damping of all velocities
+is exact in the same way (`fiberweb.engines.stepping.damped_kick`).
 
 References: Bergou et al., Discrete elastic rods, ACM Trans. Graph. 27 (2008), for the chain;
 Hochbruck and Ostermann, Exponential integrators, Acta Numerica 19 (2010), for the damper;
@@ -108,18 +109,19 @@ def coefficients(
     mesh: Mesh, layout: Layout, interleaving: Interleaving, step: float, order: int
 ) -> passes.Rods:
     """What the passes multiply with."""
-    decay = np.exp(-0.5 * mesh.scene.damping * step)  # over half a step
+    kick = stepping.damped_kick(mesh.scene.damping, step)
     matrix = diags_array(layout.span * layout.bends) + (order == 4) * spline_matrix(layout)
     stiffness = mesh.scene.bending_stiffness * matrix
     over_edges = mesh.scene.axial_stiffness * layout.solid, layout.edge
     over_nodes = (
         layout.bends / layout.span, *(np.r_[stiffness.diagonal(k), np.zeros(k)] for k in range(3)),
-        decay * step * layout.free_x / layout.mass, decay * step * layout.free_y / layout.mass,
+        kick * layout.free_x / layout.mass, kick * layout.free_y / layout.mass,
     )  # fmt: skip
     arrays = packed(
         *(a[interleaving.edges] for a in over_edges), *(a[interleaving.nodes] for a in over_nodes)
     )
-    rods = passes.Rods(*arrays, half=0.5 if order == 4 else 0.0, decay=decay * decay)
+    decay = np.exp(-mesh.scene.damping * step)
+    rods = passes.Rods(*arrays, half=0.5 if order == 4 else 0.0, decay=decay)
     if np.array_equal(rods.kick_x, rods.kick_y):  # the same in x and in y: one array less to load
         rods = rods._replace(kick_y=rods.kick_x)
     return rods

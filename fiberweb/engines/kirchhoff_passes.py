@@ -28,7 +28,7 @@ class Rods(NamedTuple):
     bend: np.ndarray  # bands of EI times the spline's matrix, N m^3
     bend_up: np.ndarray
     bend_up2: np.ndarray
-    kick_x: np.ndarray  # step over mass, damped over half a step
+    kick_x: np.ndarray  # velocity that a force gives in a step, damped, s/kg
     kick_y: np.ndarray
     half: float  # 1/2, or 0 in the usual chain, which has no bow
     decay: float  # of a free velocity over a step

@@ -75,6 +75,19 @@ def displace(state, mesh: Mesh, layout: Layout, interleaving: Interleaving) -> N
     state.y[at] += mesh.start[:, 1]
 
 
+def damped_kick(rate: float, step: float) -> float:
+    """What a step makes of a constant force over mass, (1 - exp(-rate step)) / rate, in s.
+
+    With v' = exp(-rate step) v + damped_kick a, the flow of dv/dt = a - rate v over a step, between
+    the two halves of a drift, leapfrog stays of second order and time-reversible, a force gives
+    the right terminal velocity a / rate at any step, and so a slow mode of frequency w the right
+    rate of decay w^2 / rate. A kick of step exp(-rate step / 2), which undamped leapfrog between
+    two half decays comes to, has x / sinh x of both, x = rate step / 2. The step stays stable: its
+    limit grows by x coth x in h^2. Reference: Hochbruck and Ostermann, Acta Numerica 19 (2010).
+    """
+    return -np.expm1(-rate * step) / rate if rate > 0.0 else step
+
+
 @kernel
 def drive_value(coefficients, rate, time):
     """The input's spline at one time."""

@@ -34,8 +34,7 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     nodes = np.array([readout.nodes for readout in readouts])
     weights = np.array([readout.weights for readout in readouts])
     rest = np.einsum("rk,rkc->rc", weights, mesh.position[nodes])
-    # what a perturbed pair differs by at first is less than single precision keeps
-    moved = recording.displacement.astype(np.float64 if scene.disturbance else np.float32)
+    moved = recording.displacement
     unstable = recording.unstable_at is not None
     packages = load(numerics.engine).PACKAGES
     u = spline(scene.seed, scene.duration, scene.drive_rate)(scene.times)

@@ -81,7 +81,8 @@ def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
 def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray:
     """Displacement of every node at every step, shape (steps + 1, nodes, 2), m."""
     scene, mass = mesh.scene, kirchhoff_masses(mesh, order)
-    half = np.exp(-0.5 * scene.damping * step)
+    # the flow of dv/dt = a - rate v over a step, for a that is held
+    decay, kick = _flow(scene.damping, step)
     groups = _meeting(mesh)
     x, v = mesh.position.copy(), np.zeros_like(mesh.position)
     out = [x - mesh.position]
@@ -96,19 +97,18 @@ def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray
                 ),
                 x[start:end],
             )
-        v = half * v
-        new = v + step * np.where(mesh.held, 0.0, force / mass[:, None])
+        new = decay * v + kick * np.where(mesh.held, 0.0, force / mass[:, None])
         for nodes, spring, damper in groups:
             if np.isinf(spring).any():  # one point: an inelastic collision
                 new[nodes] = mass[nodes] @ new[nodes] / mass[nodes].sum()
                 continue
-            # m dv/dt = f - K x - N v, with f and x held over the step
+            # m dv/dt = f - K x - N v - m rate v, with f and x held over the step
             push = (force[nodes] - spring @ x[nodes]) / mass[nodes, None]
-            drag = -damper / mass[nodes, None]
             count = len(nodes)
+            drag = -damper / mass[nodes, None] - scene.damping * np.eye(count)
             flow = expm(step * np.block([[drag, push], [np.zeros((2, count + 2))]]))
             new[nodes] = flow[:count, :count] @ v[nodes] + flow[:count, count:]
-        v = half * new
+        v = new
         x = x + 0.5 * step * v
         out.append(x - mesh.position)
     return np.array(out)
@@ -123,6 +123,9 @@ def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
     angles = [a.copy() for a in rest_angles]
     spins = [np.zeros(len(a)) for a in angles]
     per_length = scene.density * second_moment(scene.diameter)
+    decay, kick = np.exp(-scene.damping * step), step  # PyElastica's: the kick, then the decay
+    if scene.setup == "described":
+        kick = _flow(scene.damping, step)[1] / decay
     inertia = [per_length * mesh.edges(f) for f in range(len(fibres))]
     out = [x - mesh.position]
     for k in range(steps):
@@ -143,11 +146,10 @@ def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
                 mesh.edges(number), inertia[number], mesh.clamped[number],
             )  # fmt: skip
             force[f] += inner
-            spin = spins[number] + step * torque * stretch / inertia[number]
+            spin = spins[number] + kick * torque * stretch / inertia[number]
             spin *= np.exp(-step * _spin_damping(scene, mass[f], inertia[number], stretch))
             spun.append(_filtered(spin, scene.filter_order))
-        v = v + step * np.where(mesh.held, 0.0, force / mass[:, None])
-        v = np.exp(-scene.damping * step) * v
+        v = decay * (v + kick * np.where(mesh.held, 0.0, force / mass[:, None]))
         for f in fibres:
             v[f] = np.column_stack([_filtered(column, scene.filter_order) for column in v[f].T])
         spins = spun
@@ -208,6 +210,12 @@ def _outer(mesh: Mesh, time: float) -> np.ndarray:
     interval = min(int(time * scene.drive_rate), len(mesh.drive) - 1)
     u = np.polyval(mesh.drive[interval], time - interval / scene.drive_rate)
     return ramp * mesh.pull + u * mesh.load
+
+
+def _flow(rate: float, step: float) -> tuple[float, float]:
+    """What a step leaves of a velocity, and what it makes of a constant acceleration (s)."""
+    flow = expm(step * np.array([[-rate, 1.0], [0.0, 0.0]]))
+    return flow[0, 0], flow[0, 1]
 
 
 def _gradient(energy, x) -> np.ndarray:

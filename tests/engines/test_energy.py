@@ -53,6 +53,14 @@ def test_ledger_of_a_driven_run_closes(network, setup, engine, elements, bound):
     assert (np.diff(dissipated) >= 0).all() and dissipated[-1] > 0.01 * work[-1]
 
 
+@pytest.mark.parametrize("damping", [3e4, 1e5])
+def test_the_ledger_closes_under_strong_damping(damping):
+    """What the damper takes is exact in the terminal velocity, several decay times a step."""
+    response = simulate(Scene(SMALL, duration=1.0, damping=damping), elements_per_section=2)
+    assert damping * response.attrs["time_step"] > 2.0
+    assert response.attrs["energy_residual"] < 1e-4
+
+
 @pytest.mark.parametrize("engine", ["kirchhoff", "cosserat"])
 @pytest.mark.parametrize("tension, bound", [(0.01, 2e-4), (0.5, 3e-3)])
 def test_the_ramp_of_the_tension_is_entered(engine, tension, bound):

@@ -48,8 +48,10 @@ def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwar
         (crosshatch(2, spacing=0.05), dict(crossing_stiffness=np.inf)),
         (polygon(6, diameter=0.2), dict()),
         (polygon(6, diameter=0.2), dict(crossing_stiffness=np.inf)),
+        (crosshatch(2, spacing=0.05), dict(damping=5e3)),
+        (polygon(6, diameter=0.2), dict(damping=5e3)),
     ],
-    ids=["clamped", "sliding", "merged", "polygon", "merged-polygon"],
+    ids=["clamped", "sliding", "merged", "polygon", "merged-polygon", "damped", "damped-polygon"],
 )
 def test_kirchhoff_kernel_against_oracle(network, fields, order):
     """Pairs at the crossings of a crosshatch; three diameters meet at the hexagon's centre."""
@@ -65,8 +67,9 @@ def test_kirchhoff_kernel_against_oracle(network, fields, order):
         (crosshatch(2, spacing=0.05), 4, dict(setup="published", filter_order=3)),
         (crosshatch(2, spacing=0.05), 4, dict(tension=2.0)),
         (polygon(6), None, dict(setup="published")),
+        (crosshatch(2, spacing=0.05), 4, dict(damping=5e3)),
     ],
-    ids=["published", "short", "third-order", "described", "polygon"],
+    ids=["published", "short", "third-order", "described", "polygon", "damped"],
 )
 def test_cosserat_kernel_against_oracle(network, elements_per_section, fields):
     """Filters, dampers, clamps and joints of PyElastica in the plane, at the authors' step."""

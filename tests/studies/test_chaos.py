@@ -163,11 +163,11 @@ def test_the_study_asks_for_pairs_that_differ_by_the_disturbance():
         assert second.disturbance - first.disturbance == pytest.approx(Config().chaos.disturbance)
 
 
-def test_disturbed_responses_alone_keep_every_digit():
-    scene = Scene(crosshatch(2, length=0.5), duration=0.1)
-    kept = simulate(replace(scene, disturbance=1e-9), "draft")["displacement"]
-    assert kept.dtype == np.float64
-    assert simulate(scene, "draft")["displacement"].dtype == np.float32
+def test_files_of_disturbed_responses_keep_every_digit(tmp_path):
+    scene = Scene(crosshatch(2, length=0.5), duration=0.1, disturbance=1e-9)
+    response = simulate(scene, "draft")
+    dataset.save(response, tmp_path / "response.nc")
+    assert dataset.load(tmp_path / "response.nc").identical(response)
 
 
 def test_runs_of_a_pair_that_forgets_end_far_below_what_counts_as_round_off():

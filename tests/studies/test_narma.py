@@ -31,7 +31,7 @@ def recording(n, duration=8.0, status="ok", name="run"):
     return xr.Dataset(
         {
             "input": ("time", u),
-            "displacement": (("time", "readout", "axis"), moved.astype(np.float32)),
+            "displacement": (("time", "readout", "axis"), moved),
         },
         {"time": time, "axis": ["x", "y"]},
         {

@@ -195,7 +195,7 @@ def _readouts(response: xr.Dataset, step: int) -> Mapping[str, np.ndarray]:
     # Derivatives are taken at the recording's rate, where its spline is the drive's own.
     trivial = trivial_readouts(u, float(response.attrs["sample_rate"]))
     return {
-        "network": moved[::step].astype(float),
+        "network": moved[::step],
         "echo_state": esn.states(sampled, moved.shape[1]),
     } | {name: x[::step] for name, x in trivial.items()}
 

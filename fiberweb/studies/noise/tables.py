@@ -24,22 +24,21 @@ def noisy(response: xr.Dataset, noise: float, seed: int, level: int) -> xr.Datas
             levels share one.
 
     Returns:
-        A copy whose ``displacement(time, readout, axis)``, m, is in double precision: single
-        precision would round the noise of a strongly moving readout.
+        A copy with another ``displacement(time, readout, axis)``, m.
 
     Raises:
         ValueError: the noise is negative.
     """
     if not noise >= 0.0:
         raise ValueError(f"noise = {noise!r} is not usable; give a standard deviation of 0 m or up")
-    moved = response["displacement"].astype(np.float64)
+    moved = response["displacement"]
     draw = np.random.default_rng([seed, level]).normal(0.0, noise, moved.shape)
     return response.assign(displacement=moved + draw)
 
 
 def median_amplitude(response: xr.Dataset) -> float:
     """Standard deviation in time of a displacement signal, the median one (m); NaN if unstable."""
-    deviation = response["displacement"].astype(np.float64).std("time", skipna=False)
+    deviation = response["displacement"].std("time", skipna=False)
     return float(np.median(deviation))
 
 
