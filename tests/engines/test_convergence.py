@@ -13,6 +13,7 @@ from fiberweb.model.scene import Scene
 from fiberweb.validation.accuracy import Case, difference, extrapolate
 from tests.engines.fibres import (
     ENGINES,
+    PLANAR,
     cantilever,
     every_node,
     fibre,
