@@ -6,6 +6,8 @@ means 40 /s on rotations only in those units (in SI the same call gives 4e7 /s).
 
 from __future__ import annotations
 
+from itertools import chain
+
 import elastica as ea
 import numpy as np
 from elastica._rotations import _inv_rotate
@@ -13,7 +15,7 @@ from numba import njit
 
 from fiberweb.engines.base import RUNAWAY, Numerics, Recording, fitted_step, readout_arrays
 from fiberweb.engines.cosserat import largest_step as largest_step
-from fiberweb.engines.cosserat import refuse
+from fiberweb.engines.cosserat import refuse as cannot_model
 from fiberweb.engines.stepping import drive_value
 from fiberweb.model.mesh import Mesh
 
@@ -28,6 +30,15 @@ GRAM_PER_SECOND = 1e3  # of one N s/m, and of one N/m per second
 
 class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connections, ea.Damping):
     """Rods with everything a fibre network needs."""
+
+
+class DampedFirst(Simulator):
+    """The order of PyElastica 0.3.2, which the authors ran: damper, filter, constraints."""
+
+    def constrain_rates(self, time):
+        """Damp, filter and then hold velocities."""
+        for act in chain(self._feature_group_damping, self._feature_group_constrain_rates):
+            act(time=time)
 
 
 class Drive(ea.NoForces):
@@ -70,6 +81,16 @@ def _wall_torque(pair, directors, stiffness, dilatation, torques):
         torques[i, 0] -= stiffness[i] * turn[i, 0] / e**3
 
 
+def refuse(mesh: Mesh) -> None:
+    """Raise ValueError if the scene needs what this engine does not model."""
+    cannot_model(mesh)
+    if mesh.scene.dead_band:
+        raise ValueError(
+            f"dead_band = {mesh.scene.dead_band}: PyElastica has had none since 0.3.3; use "
+            "engine = 'cosserat', or dead_band = False"
+        )
+
+
 def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recording:
     """Integrate a mesh with PyElastica.
 
@@ -79,7 +100,7 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
         disturbance: velocity (m/s) out of the plane given to the driven nodes at the start.
 
     Raises:
-        ValueError: crossings without compliance.
+        ValueError: crossings without compliance, or a dead band.
     """
     simulator, rods, step, per_sample = assemble(mesh, numerics)
     for rod, nodes in _driven(mesh, rods):
@@ -115,7 +136,7 @@ def assemble(mesh: Mesh, numerics: Numerics):
     refuse(mesh)
     scene = mesh.scene
     step, per_sample = fitted_step(scene, numerics.time_step)
-    simulator = Simulator()
+    simulator = DampedFirst() if scene.setup == "published" else Simulator()
     rods = [_rod(mesh, fibre) for fibre in range(len(mesh.first) - 1)]
     for fibre, rod in enumerate(rods):
         moved = mesh.start[mesh.first[fibre] : mesh.first[fibre + 1]]
@@ -181,11 +202,11 @@ def _hold(simulator, mesh: Mesh, fibre: int, rod) -> None:
 
 
 def _pull(simulator, mesh: Mesh, fibre: int, rod) -> None:
-    far = mesh.pull[mesh.first[fibre + 1] - 1]
+    near, far = mesh.pull[mesh.first[fibre]], mesh.pull[mesh.first[fibre + 1] - 1]
     if far.any():
         simulator.add_forcing_to(rod).using(
             ea.EndpointForces,
-            start_force=np.zeros(3),
+            start_force=MICRONEWTON * np.array([*near, 0.0]),
             end_force=MICRONEWTON * np.array([*far, 0.0]),
             ramp_up_time=max(mesh.scene.tension_ramp, 1e-12),
         )

@@ -29,10 +29,20 @@ SHUFFLE_SEED = 42  # feature selection script: random_state of sklearn's train_t
 # on the crosshatch only, a softer pin on the polygon.
 PHYSICS = {
     "crosshatch": dict(
-        crossing_stiffness=1e6, crossing_damping=0.0, damping=10.0, filter_order=6, ends="sliding"
+        crossing_stiffness=1e6,
+        crossing_damping=0.0,
+        damping=10.0,
+        filter_order=6,
+        ends="sliding",
+        dead_band=True,
     ),
     "polygon": dict(
-        crossing_stiffness=1e3, crossing_damping=0.0, damping=10.0, filter_order=0, ends="pinned"
+        crossing_stiffness=1e3,
+        crossing_damping=0.0,
+        damping=10.0,
+        filter_order=0,
+        ends="pinned",
+        dead_band=True,
     ),
 }
 

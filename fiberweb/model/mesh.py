@@ -176,6 +176,8 @@ def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
             held[far] = abs(direction) < 0.5
         if fibre in pulled:
             pull[far] = scene.tension * direction
+            if scene.setup == "published":
+                pull[first[fibre]] = -pull[far]  # on a held node, where only the filter sees it
     return held, pull
 
 

@@ -22,8 +22,9 @@ PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one p
 # damping and crossings are unreported there, so these are the calibrated values. `published` is
 # the authors' code.
 DESCRIBED = dict(
-    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped"
-)
+    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped",
+    dead_band=False,
+)  # fmt: skip
 SETUPS = {("described", topology): DESCRIBED for topology in authors.PHYSICS} | {
     ("published", topology): values for topology, values in authors.PHYSICS.items()
 }
@@ -52,6 +53,8 @@ class Scene:
         damping: rate at which velocity decays (1/s).
         filter_order: of the Laplace filter applied to velocities at every step, up to 6; 0 for
             none.
+        dead_band: bend as the authors' rotations do, which see no angle between neighbouring
+            elements below some 1e-5 rad (`fiberweb.engines.authors_rotations`).
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
         tension_ramp: time over which the tension grows from zero (s).
@@ -78,6 +81,7 @@ class Scene:
     crossing_damping: NotNegative | None = None
     damping: NotNegative | None = None
     filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
+    dead_band: Annotated[bool, Field(strict=True)] | None = None
     ends: Literal["clamped", "sliding", "pinned"] | None = None
     tension_ramp: NotNegative = 0.25
     disturbance: NotNegative = 0.0

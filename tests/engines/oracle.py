@@ -146,10 +146,12 @@ def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
             spin = spins[number] + step * torque * stretch / inertia[number]
             spin *= np.exp(-step * _spin_damping(scene, mass[f], inertia[number], stretch))
             spun.append(_filtered(spin, scene.filter_order))
-        v = v + step * np.where(mesh.held, 0.0, force / mass[:, None])
+        late = scene.setup == "published"  # held nodes stop after damper and filter, not before
+        v = v + step * np.where(mesh.held & (not late), 0.0, force / mass[:, None])
         v = np.exp(-scene.damping * step) * v
         for f in fibres:
             v[f] = np.column_stack([_filtered(column, scene.filter_order) for column in v[f].T])
+        v[mesh.held] = 0.0
         spins = spun
         x = x + 0.5 * step * v
         angles = [a + 0.5 * step * w for a, w in zip(angles, spins)]
