@@ -10,7 +10,7 @@ import numpy as np
 
 from fiberweb.model import authors_mesh
 from fiberweb.model.authors import ELEMENT
-from fiberweb.model.drive import spline
+from fiberweb.model.drive import of_scene as drive_of
 from fiberweb.model.lines import Line, cut, nodes_about
 from fiberweb.model.readouts import places
 from fiberweb.model.scene import Scene
@@ -121,7 +121,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
         joints=joints,
         joint_stiffness=stiffness,
         joint_damping=damping,
-        drive=np.ascontiguousarray(spline(scene.seed, scene.duration, scene.drive_rate).c.T),
+        drive=np.ascontiguousarray(drive_of(scene).c.T),
         readouts=_readouts(scene, lines, first),
         start=load * (scene.disturbance / scene.force),
     )
