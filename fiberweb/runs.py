@@ -50,7 +50,7 @@ class Run:
             f"s{1e3 * network.spacing:.1f}mm",
             f"f{1e3 * self.scene.force:.1f}mN",
             f"t{1e3 * self.scene.tension:.1f}mN",
-            "published" if self.scene.setup == "published" else "",
+            "" if self.scene.setup == "described" else self.scene.setup,
             hashlib.sha256(request.encode()).hexdigest()[:6],
         ]
         return "-".join(filter(None, parts))
@@ -76,7 +76,7 @@ def check(table: Iterable[Run]) -> None:
         scene = run.scene
         model = (scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension)
         kind = (*model, math.isinf(scene.crossing_stiffness), json.dumps(run.numerics))
-        if "time_step" in run.numerics and scene.setup == "described":
+        if "time_step" in run.numerics and scene.setup != "published":
             kind = (*kind, replace(scene, **AT_ANY).to_json())
         kinds.setdefault(kind, run)
     for run in kinds.values():
@@ -93,12 +93,12 @@ def runs(config: Config, study: str, setup: str, best: Mapping | None = None) ->
     """
     if setup not in studies.setups(study):
         return []
-    described = setup == "described"
-    general = _given(config.numerics.model_dump()) if described else {}
+    published = setup == "published"
+    general = {} if published else _given(config.numerics.model_dump())
     table = {}
     for point in studies.load(study).points(getattr(config, study), lab(config, setup, best)):
         scoring = {"alpha": config.scoring.alpha}
-        if not described and point.scene.network.topology == "polygon":
+        if published and point.scene.network.topology == "polygon":
             scoring["skip"] = SKIPPED_FRAMES
         numerics = general if point.numerics is None else point.numerics
         run = Run(point.scene, numerics, scoring, point.choice)

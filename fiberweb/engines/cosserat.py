@@ -62,6 +62,7 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     scratch = passes.Scratch(*(block[timing.stride :] for block in blocks[:4]), *blocks[4:])
     arguments = (
         state, scratch, *coefficients(*chain, timing.step), held_at_the_end(*chain),
+        stepping.build_guides(*chain),
         laplace.build_filtering(*chain),
         stepping.build_forcing(*chain), read,
         energy.build_ledger(*chain, layout.mass[interleaving.nodes]), timing,
@@ -129,10 +130,10 @@ def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
     """Rates (1/s) at which angular velocities decay: at rest, and per unit of dilatation.
 
     The authors' damper divides by the inertia in mm-g-s units: 4 / r^2 times the rate on
-    velocities with r in mm, to the power of the dilatation. The described one is uniform.
+    velocities with r in mm, to the power of the dilatation. Others are uniform.
     """
     scene = mesh.scene
-    if scene.setup == "described":
+    if scene.setup != "published":
         return np.full(len(inertia), scene.damping), np.zeros(len(inertia))
     in_mm_g = 1e9  # kg m^2 -> g mm^2
     mass = 1e3 * layout.mass
@@ -146,8 +147,8 @@ def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
 
 @entry
 def advance(
-    state, scratch, rods, spin, held, filtering, forcing, readouts, ledger, timing,
-    first, out, energies,
+    state, scratch, rods, spin, held, guides, filtering, forcing, readouts, ledger,
+    timing, first, out, energies,
 ):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
@@ -208,6 +209,7 @@ def advance(
             if filtered:
                 laplace.filter_velocities(views, filtering, scratch.difference, stride)
             passes.hold(state, held)
+            stepping.guide(guides, x, y, vx, vy, 0.0)
             if due:
                 if filtered:
                     lost = passes.add_filter_power(lost, before, kicked, state, spin, ledger, step)

@@ -55,6 +55,22 @@ class Drive(ea.NoForces):
         system.external_forces[:, self.nodes] += u * self.load
 
 
+class Guide(ea.ConstraintBase):
+    """A node that slides along a slanted line."""
+
+    def __init__(self, *_, node, along, **kwargs):
+        super().__init__(**kwargs)
+        self.node, self.along = node, along
+
+    def constrain_values(self, system, time):
+        """Its position follows from its velocity."""
+
+    def constrain_rates(self, system, time):
+        """Leave it the part of its velocity along the line."""
+        velocity = system.velocity_collection[:, self.node]
+        velocity[:] = (self.along @ velocity) * self.along
+
+
 class Wall(ea.NoForces):
     """Bending moment of a clamp on the first element: the curvature of the half cell between
     wall and element centre (see `fiberweb.engines.layout`)."""
@@ -191,6 +207,12 @@ def _hold(simulator, mesh: Mesh, fibre: int, rod) -> None:
             constrained_position_idx=(int(node),),
             translational_constraint_selector=np.array([*held[node], True]),
         )
+    for node, along in zip(mesh.guided, mesh.guides):
+        if 0 <= node - mesh.first[fibre] < len(held):
+            index = int(node - mesh.first[fibre])
+            simulator.constrain(rod).using(
+                Guide, constrained_position_idx=(index,), node=index, along=np.array([*along, 0.0])
+            )
     if mesh.clamped[fibre]:
         simulator.add_forcing_to(rod).using(Wall, rod=rod)
     else:

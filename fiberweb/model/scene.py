@@ -18,15 +18,21 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
 
-# What each setup does where the scene leaves a field open. `described` is the paper's text; its
-# damping and crossings are unreported there, so these are the calibrated values. `published` is
-# the authors' code.
+# What each setup does where the scene leaves a field open. `described`: the paper's text, and where
+# that leaves something open the authors' code, less its numerics. `compliant`: crossings that give,
+# one way in which a web could remember; its three numbers are calibrated (study `calibration`).
+# `published`: the authors' code.
+NO_NUMERICS = dict(filter_order=0, dead_band=False)
 DESCRIBED = dict(
-    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped",
-    dead_band=False,
-)  # fmt: skip
-SETUPS = {("described", topology): DESCRIBED for topology in authors.PHYSICS} | {
-    ("published", topology): values for topology, values in authors.PHYSICS.items()
+    crossing_stiffness=math.inf, crossing_damping=0.0, damping=10.0, ends="sliding", **NO_NUMERICS
+)
+COMPLIANT = dict(
+    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, ends="clamped", **NO_NUMERICS
+)
+SETUPS = {
+    "described": dict.fromkeys(authors.PHYSICS, DESCRIBED),
+    "published": authors.PHYSICS,
+    "compliant": dict.fromkeys(authors.PHYSICS, COMPLIANT),
 }
 
 
@@ -38,7 +44,8 @@ class Scene:
 
     Attributes:
         network: from `crosshatch` or `polygon`.
-        setup: "described" (the paper's text) or "published" (the authors' code).
+        setup: "described" (the paper's text), "published" (the authors' code) or "compliant" (with
+            crossings that give).
         force: F_max (N), which the input multiplies; Eq. 3 if None.
         tension: constant pull along each fibre at its far end (N).
         duration: s.
@@ -67,7 +74,7 @@ class Scene:
     """
 
     network: Network
-    setup: Literal["described", "published"] = "described"
+    setup: Literal[tuple(SETUPS)] = "described"
     force: Positive | None = None
     tension: NotNegative = 0.01
     duration: Positive = 100.0
@@ -99,7 +106,7 @@ class Scene:
             except ValidationError as error:
                 raise ValueError(sentence(error, name)) from None
             object.__setattr__(self, name, value)
-        for name, value in SETUPS[self.setup, self.network.topology].items():
+        for name, value in SETUPS[self.setup][self.network.topology].items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
         if self.force is None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from types import ModuleType
 
+from fiberweb.model.scene import SETUPS
+
 STUDIES = (
     "topology",
     "ridge",
@@ -29,7 +31,7 @@ def load(name: str) -> ModuleType:
 
 def setups(name: str) -> tuple[str, ...]:
     """The setups that a study runs in."""
-    return getattr(load(name), "SETUPS", ("described", "published"))
+    return getattr(load(name), "SETUPS", tuple(SETUPS))
 
 
 def makers(kind: str) -> dict[str, str]:

@@ -12,7 +12,9 @@ from fiberweb.model.mesh import build
 from tests.engines import oracle
 from tests.engines.fibres import every_node, largest_step, sampled
 
+COMPLIANT = dict(setup="compliant")
 # their order of operations; the dead band follows round-off, see tests/engines/test_dead_band.py
+
 AUTHORS = dict(setup="published", dead_band=False)
 
 
@@ -46,13 +48,14 @@ def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwar
 @pytest.mark.parametrize(
     ("network", "fields"),
     [
-        (crosshatch(2, spacing=0.05), dict(tension=2.0)),
-        (crosshatch(2, spacing=0.05), dict(ends="sliding")),
-        (crosshatch(2, spacing=0.05), dict(crossing_stiffness=np.inf)),
+        (crosshatch(2, spacing=0.05), COMPLIANT | dict(tension=2.0)),
+        (crosshatch(2, spacing=0.05), COMPLIANT | dict(ends="sliding")),
+        (crosshatch(2, spacing=0.05), dict()),
+        (polygon(6, diameter=0.2), COMPLIANT),
+        (polygon(6, diameter=0.2), COMPLIANT | dict(ends="sliding", tension=5.0)),
         (polygon(6, diameter=0.2), dict()),
-        (polygon(6, diameter=0.2), dict(crossing_stiffness=np.inf)),
     ],
-    ids=["clamped", "sliding", "merged", "polygon", "merged-polygon"],
+    ids=["clamped", "sliding", "described", "polygon", "guided-polygon", "described-polygon"],
 )
 def test_kirchhoff_kernel_against_oracle(network, fields, order):
     """Pairs at the crossings of a crosshatch; three diameters meet at the hexagon's centre."""
@@ -66,10 +69,11 @@ def test_kirchhoff_kernel_against_oracle(network, fields, order):
         (crosshatch(2, length=0.5), None, AUTHORS),
         (crosshatch(2, spacing=0.05), 4, AUTHORS),  # both ends in the stencil
         (crosshatch(2, spacing=0.05), 4, AUTHORS | dict(filter_order=3)),
-        (crosshatch(2, spacing=0.05), 4, dict(tension=2.0)),
+        (crosshatch(2, spacing=0.05), 4, COMPLIANT | dict(tension=2.0)),
+        (polygon(6, diameter=0.2), 4, COMPLIANT | dict(ends="sliding", tension=5.0)),
         (polygon(6), None, AUTHORS),
     ],
-    ids=["published", "short", "third-order", "described", "polygon"],
+    ids=["published", "short", "third-order", "compliant", "guided-polygon", "polygon"],
 )
 def test_cosserat_kernel_against_oracle(network, elements_per_section, fields):
     """Filters, dampers, clamps and joints of PyElastica in the plane, at the authors' step."""
@@ -81,11 +85,12 @@ def test_cosserat_kernel_against_oracle(network, elements_per_section, fields):
 @pytest.mark.parametrize(
     ("network", "elements_per_section", "fields"),
     [
-        (crosshatch(4, length=0.5), 10, {}),
+        (crosshatch(4, length=0.5), 10, COMPLIANT),
+        (polygon(6), 10, COMPLIANT | dict(ends="sliding")),
         (crosshatch(4, length=0.5), None, AUTHORS),
         (polygon(6, diagonals="skip-one"), None, AUTHORS),
     ],
-    ids=["described", "published", "hexagon"],
+    ids=["compliant", "guided-hexagon", "published", "hexagon"],
 )
 def test_cosserat_against_pyelastica(network, elements_per_section, fields):
     """The authors' scenes for 2e4 steps of 5 us. Round-off, which PyElastica's angle from an arc

@@ -43,6 +43,6 @@ rule claims:
     conda:
         "../../envs/environment.yaml"
     message:
-        "The claims of both setups side by side"
+        "The claims of all setups side by side"
     script:
         "../scripts/join_claims.py"

@@ -11,11 +11,12 @@ from snakemake.exceptions import WorkflowError
 
 from fiberweb import source, studies
 from fiberweb.config import check_folders, load
+from fiberweb.model.scene import SETUPS
 from fiberweb.runs import check, run_table, runs
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-SUFFIXES = {"described": "", "published": "-published"}  # of figures
+SUFFIXES = {setup: f"-{setup}" for setup in SETUPS} | {"described": ""}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 
 
@@ -44,7 +45,7 @@ def capacity(run):
 
 def study_runs(study, setup):
     """The runs of a study; those that start from the ridge's best forces wait for them."""
-    if setup == "described" and getattr(studies.load(study), "AFTER_RIDGE", False):
+    if setup != "published" and getattr(studies.load(study), "AFTER_RIDGE", False):
         from fiberweb.studies.ridge.best import read_best  # with pandas, which few calls need
 
         best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
