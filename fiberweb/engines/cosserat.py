@@ -11,6 +11,8 @@ Jeanmart and Winckelmans, Phys. Fluids 19, 055110 (2007), for the filter.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from fiberweb.engines import authors_rotations, energy, laplace, stepping
@@ -44,8 +46,13 @@ def refuse(mesh: Mesh) -> None:
         )
 
 
-def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
+def integrate(mesh: Mesh, numerics: Numerics, watch: Callable | None = None) -> Recording:
     """Integrate a mesh in the plane; see the module's docstring for the model.
+
+    Args:
+        mesh, numerics: as for every engine.
+        watch: called every `CHUNK` samples with the number of the next one, and angle (rad) and
+            squared length of the directors of every element, in the mesh's order.
 
     Raises:
         ValueError: crossings without compliance.
@@ -68,7 +75,12 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
         energy.build_ledger(*chain, layout.mass[interleaving.nodes]), timing,
     )  # fmt: skip
 
+    elements = interleaving.place[np.delete(layout.at, mesh.first[1:] - 1)]  # by their near node
+
     def advance_to(first, displacement, energies):
+        if watch:
+            squared = state.cosine**2 + state.sine**2
+            watch(first, state.angle[elements], squared[elements])
         return advance(*arguments, first, displacement, energies)
 
     return record_in_chunks(mesh.scene, len(read.nodes), advance_to)

@@ -37,7 +37,7 @@ class Point:
     Attributes:
         scene: the physics.
         choice: where its force comes from: "eq3", "grid", "best_c_nl", "best_c_m",
-            "authors_c_nl", "authors_c_m", "authors" or "buckling".
+            "authors_c_nl", "authors_c_m", "authors", "buckling" or "mesh".
         numerics: keyword arguments of `fiberweb.simulate` instead of the config's; None for those.
     """
 

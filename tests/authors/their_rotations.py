@@ -1,4 +1,4 @@
-"""PyElastica 0.3.2 with the authors' logarithm of a rotation in the place of its own.
+"""PyElastica 0.3.2 as the authors ran it: with their logarithm of a rotation, and its own stepper.
 
 Facts, and none of their code: they clip the trace at 3, take no offset off the argument of arccos,
 and divide by sin(theta + 1e-14).
@@ -6,7 +6,10 @@ and divide by sin(theta + 1e-14).
 
 import numpy as np
 from elastica.rod import cosserat_rod
+from elastica.timestepper import extend_stepper_interface
 from numba import njit
+
+from fiberweb.engines import cosserat, elastica
 
 
 @njit
@@ -33,6 +36,19 @@ def inv_rotate(directors):
     return vectors
 
 
-def install() -> None:
-    """Before PyElastica compiles anything; its cache on disk must be empty."""
-    cosserat_rod._inv_rotate = inv_rotate
+def run_steps(simulator, stepper, time, step, count):
+    """`fiberweb.engines.elastica.run_steps` in the words of 0.3.2."""
+    do_step, stages = extend_stepper_interface(stepper, simulator)
+    for _ in range(count):
+        time = do_step(stepper, stages, simulator, time, step)
+    return time
+
+
+def install(patch, banded: bool) -> None:
+    """Make the elastica engine run on 0.3.2, with their function or with its own; PyElastica must
+    not have compiled anything yet, nor have a cache on disk."""
+    patch.setattr(elastica, "run_steps", run_steps)
+    patch.setattr(elastica, "DampedFirst", elastica.Simulator)  # the order of 0.3.2 itself
+    if banded:
+        patch.setattr(cosserat_rod, "_inv_rotate", inv_rotate)
+        patch.setattr(elastica, "refuse", cosserat.refuse)
