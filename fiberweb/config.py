@@ -79,7 +79,7 @@ def lab(config: Config, setup: str, best: Mapping | None = None) -> Lab:
 
     Args:
         config: the whole config.
-        setup: "described" or "published".
+        setup: one of `fiberweb.model.scene.SETUPS`.
         best: (choice, spacing in m) to force (N), as the ridge's table of best forces holds them;
             None while it is not made.
     """

@@ -58,7 +58,7 @@ class Run:
             f"s{1e3 * network.spacing:.1f}mm",
             f"f{1e3 * self.scene.force:.1f}mN",
             f"t{1e3 * self.scene.tension:.1f}mN",
-            "published" if self.scene.setup == "published" else "",
+            "" if self.scene.setup == "described" else self.scene.setup,
             hashlib.sha256(self.request.encode()).hexdigest()[:DIGITS],
         ]
         return "-".join(filter(None, parts))
@@ -91,7 +91,7 @@ class Run:
             scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension,
             math.isinf(scene.crossing_stiffness), json.dumps(self.numerics),
         )  # fmt: skip
-        if "time_step" in self.numerics and scene.setup == "described":
+        if "time_step" in self.numerics and scene.setup != "published":
             return (*kind, replace(scene, **AT_ANY).to_json())
         if scene.setup == "published" or scene.filter_order:
             return (*kind, scene.network.n, scene.network.length)
@@ -133,12 +133,12 @@ def runs(config: Config, study: str, setup: str, best: Mapping | None = None) ->
     """
     if setup not in studies.setups(study):
         return []
-    described = setup == "described"
-    general = _given(config.numerics.model_dump()) if described else {}
+    published = setup == "published"
+    general = {} if published else _given(config.numerics.model_dump())
     table = {}
     for point in studies.load(study).points(getattr(config, study), lab(config, setup, best)):
         scoring = {"alpha": config.scoring.alpha}
-        if not described and point.scene.network.topology == "polygon":
+        if published and point.scene.network.topology == "polygon":
             scoring["skip"] = SKIPPED_FRAMES
         numerics = general if point.numerics is None else point.numerics
         run = Run(point.scene, numerics, scoring, point.choice)

@@ -3,7 +3,7 @@
 Each element has, besides its edge, an angle and an angular velocity of its own, so that it
 can shear; stresses, dilatation factors, dampers, the Laplace filter and the order of
 operations within a step are PyElastica's, and trajectories agree with it to round-off; the
-described setup alone makes its damper exact (`kick_before_decay`).
+other setups make its damper exact (`kick_before_decay`).
 Leapfrog: the two half drifts of its position Verlet are joined into one.
 
 References: Gazzola et al., R. Soc. Open Sci. 5, 171628 (2018), Eqs. 3.3 to 3.11;
@@ -12,10 +12,12 @@ Jeanmart and Winckelmans, Phys. Fluids 19, 055110 (2007), for the filter.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from fiberweb.engines import authors_rotations, energy, laplace, stepping
 from fiberweb.engines import cosserat_passes as passes
-from fiberweb.engines import energy, laplace, stepping
 from fiberweb.engines.base import Numerics, Recording, record_in_chunks
 from fiberweb.engines.cosserat_stiffness import largest_step as largest_step
 from fiberweb.engines.cosserat_stiffness import rotary_inertia, shear_stiffness
@@ -46,8 +48,13 @@ def refuse(mesh: Mesh) -> None:
         )
 
 
-def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
+def integrate(mesh: Mesh, numerics: Numerics, watch: Callable | None = None) -> Recording:
     """Integrate a mesh in the plane; see the module's docstring for the model.
+
+    Args:
+        mesh, numerics: as for every engine.
+        watch: called every `CHUNK` samples with the number of the next one, and angle (rad) and
+            squared length of the directors of every element, in the mesh's order.
 
     Raises:
         ValueError: crossings without compliance.
@@ -63,12 +70,19 @@ def integrate(mesh: Mesh, numerics: Numerics) -> Recording:
     blocks = packed(*np.zeros((8, len(state.x))))
     scratch = passes.Scratch(*(block[timing.stride :] for block in blocks[:4]), *blocks[4:])
     arguments = (
-        state, scratch, *coefficients(*chain, timing.step), laplace.build_filtering(*chain),
+        state, scratch, *coefficients(*chain, timing.step), held_at_the_end(*chain),
+        stepping.build_guides(*chain),
+        laplace.build_filtering(*chain),
         stepping.build_forcing(*chain), read,
         energy.build_ledger(*chain, layout.mass[interleaving.nodes]), timing,
     )  # fmt: skip
 
+    elements = interleaving.place[np.delete(layout.at, mesh.first[1:] - 1)]  # by their near node
+
     def advance_to(first, displacement, energies):
+        if watch:
+            squared = state.cosine**2 + state.sine**2
+            watch(first, state.angle[elements], squared[elements])
         return advance(*arguments, first, displacement, energies)
 
     return record_in_chunks(mesh.scene, len(read.nodes), advance_to)
@@ -82,7 +96,18 @@ def _rest(layout: Layout, interleaving: Interleaving) -> passes.State:
     nodes = interleaving.nodes
     still, unturned = np.zeros(len(nodes)), np.zeros(len(angle))
     moving = layout.x[nodes], layout.y[nodes], still, still
-    return passes.State(*packed(*moving, angle, unturned, np.cos(angle), np.sin(angle)))
+    directors = np.array([np.cos(angle), np.sin(angle)])
+    directors[abs(directors) < 1e-12] = 0.0  # along the axes they are exact, as the authors' are
+    return passes.State(*packed(*moving, angle, unturned, *directors))
+
+
+def held_at_the_end(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> passes.Held:
+    """The nodes that damper and filter see moving, and that stop after them: all that are held in
+    the authors' order of operations, none otherwise, where a held node is never kicked."""
+    if mesh.scene.setup != "published":
+        return passes.Held(*np.zeros((2, 0), dtype=np.uint64))
+    held = (np.flatnonzero(of_axis) for of_axis in mesh.held.T)
+    return passes.Held(*(interleaving.place[layout.at[at]].astype(np.uint64) for at in held))
 
 
 def coefficients(
@@ -93,8 +118,11 @@ def coefficients(
     inertia = rotary_inertia(scene) * layout.edge
     uniform, stretched = rotation_damping(mesh, layout, inertia)
     kick = kick_before_decay(scene, step)
+    kick_x, kick_y = kick * layout.free_x / layout.mass, kick * layout.free_y / layout.mass
+    if scene.setup == "published":  # see `held_at_the_end`
+        kick_x[layout.at] = kick_y[layout.at] = kick / layout.mass[layout.at]
     over_nodes = (
-        kick * layout.free_x / layout.mass, kick * layout.free_y / layout.mass,
+        kick_x, kick_y,
         scene.bending_stiffness * layout.bends / layout.span, 0.5 / layout.voronoi,
     )  # fmt: skip
     over_elements = (
@@ -108,6 +136,7 @@ def coefficients(
         over_inertia=1.0 / rotary_inertia(scene),
         decay=np.exp(-scene.damping * step),
         spin_kick=kick,
+        dead_band=scene.dead_band,
     )
     edges = interleaving.edges
     return rods, passes.Spin((layout.solid * inertia)[edges], uniform[edges])
@@ -117,7 +146,7 @@ def kick_before_decay(scene: Scene, step: float) -> float:
     """What forces over masses are multiplied with before the decay of a step (s).
 
     The step itself in the authors' setup, as in PyElastica: first order in damping * step. In the
-    described one, whose angular velocities decay like all others, what the decay leaves
+    others, whose angular velocities decay like all velocities, what the decay leaves
     `stepping.damped_kick` of: exact.
     """
     if scene.setup == "published":
@@ -129,10 +158,10 @@ def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
     """Rates (1/s) at which angular velocities decay: at rest, and per unit of dilatation.
 
     The authors' damper divides by the inertia in mm-g-s units: 4 / r^2 times the rate on
-    velocities with r in mm, to the power of the dilatation. The described one is uniform.
+    velocities with r in mm, to the power of the dilatation. Others are uniform.
     """
     scene = mesh.scene
-    if scene.setup == "described":
+    if scene.setup != "published":
         return np.full(len(inertia), scene.damping), np.zeros(len(inertia))
     in_mm_g = 1e9  # kg m^2 -> g mm^2
     mass = 1e3 * layout.mass
@@ -146,8 +175,9 @@ def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
 
 @entry
 def advance(
-    state, scratch, rods, spin, filtering, forcing, readouts, ledger, timing, first, out, energies
-):
+    state, scratch, rods, spin, held, guides, filtering, forcing, readouts, ledger,
+    timing, first, out, energies,
+):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Arguments and result: as in the kirchhoff engine.
@@ -155,9 +185,10 @@ def advance(
     x, y, vx, vy, angle, omega, cosine, sine = state
     step, per_sample, limit, stride = timing
     outer_x, outer_y = scratch.outer_x, scratch.outer_y
-    stress, couple, kick_x, kick_y, turn, drift_x, drift_y, rotate = passes.pass_views(
-        state, scratch, rods, stride
+    stress, couple, banded_couple, kick_x, kick_y, turn, drift_x, drift_y, rotate = (
+        passes.pass_views(state, scratch, rods, stride)
     )
+    dead_band = rods.dead_band
     filtered = filtering.order > 0
     views = laplace.velocity_views(state, filtering, scratch.difference, stride)
     before = passes.Velocities(vx.copy(), vy.copy(), omega.copy())
@@ -172,8 +203,9 @@ def advance(
         )
         if not stepping.in_bounds(vx, vy, limit):
             return sample
-        cosine[:] = np.cos(angle)  # the running product drifts by round-off
-        sine[:] = np.sin(angle)
+        if not dead_band:  # which is made of that drift
+            cosine[:] = np.cos(angle)  # the running product drifts by round-off
+            sine[:] = np.sin(angle)
         for k in range(start, start + per_sample):
             time = (k + 0.5) * step
             if k == start or ramp < 1.0:
@@ -185,7 +217,10 @@ def advance(
                 ramp = grown
                 stepping.apply_pull(forcing, ramp, outer_x, outer_y)
             passes.stress_pass(*stress, rods.axial, rods.shear, rods.over_inertia)
-            passes.couple_pass(*couple)
+            if dead_band:
+                authors_rotations.couple_pass(*banded_couple)
+            else:
+                passes.couple_pass(*couple)
             u = stepping.drive_value(forcing.drive, forcing.drive_rate, time)
             passes.outer_forces(state, forcing, ledger, ramp, u, outer_x, outer_y)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
@@ -195,17 +230,23 @@ def advance(
             passes.velocity_pass(*kick_x, rods.decay)
             passes.velocity_pass(*kick_y, rods.decay)
             passes.spin_pass(*turn, rods.over_inertia, rods.spin_kick)
-            lost = passes.damper_power(state, spin, ledger) if due else 0.0
-            if filtered:
-                if due:
-                    passes.copy_velocities(state, kicked)
-                laplace.filter_velocities(views, filtering, scratch.difference, stride)
-                if due:
-                    lost = passes.add_filter_power(lost, before, kicked, state, spin, ledger, step)
             if due:
+                passes.copy_velocities(state, kicked)
+                passes.hold(kicked, held)
+                lost = passes.damper_power(kicked, spin, ledger)
+            if filtered:
+                laplace.filter_velocities(views, filtering, scratch.difference, stride)
+            passes.hold(state, held)
+            stepping.guide(guides, x, y, vx, vy, 0.0)
+            if due:
+                if filtered:
+                    lost = passes.add_filter_power(lost, before, kicked, state, spin, ledger, step)
                 energy.enter_dissipation(ledger, due * step, lost)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
             passes.drift_pass(*drift_x, step)
             passes.drift_pass(*drift_y, step)
-            passes.rotate_pass(*rotate, step)
+            if dead_band:
+                authors_rotations.rotate_pass(*rotate, step)
+            else:
+                passes.rotate_pass(*rotate, step)
     return out.shape[0]

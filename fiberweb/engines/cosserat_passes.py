@@ -46,6 +46,14 @@ class Rods(NamedTuple):
     over_inertia: float  # 1 / (rho I), m / kg
     decay: float  # of a free velocity over a step
     spin_kick: float  # what an angular acceleration gives in a step, before it decays, s
+    dead_band: bool  # rotations as in `authors_rotations`
+
+
+class Held(NamedTuple):
+    """Nodes whose velocity is set to zero at the end of a step, after damper and filter."""
+
+    x: np.ndarray
+    y: np.ndarray
 
 
 class Spin(NamedTuple):
@@ -94,6 +102,8 @@ def pass_views(state, scratch, rods, s):
          over_edge[a], fx[a], fy[a], length[a], alpha[a]),
         (angle[before], angle[inner], length[before], length[inner], bend[inner],
          half_over_voronoi[inner], couple[inner]),
+        (c[before], sine[before], c[inner], sine[inner], length[before], length[inner],
+         bend[inner], half_over_voronoi[inner], couple[inner]),
         (vx[inner], fx[before], fx[inner], outer_x[inner], kick_x[inner]),
         (vy[inner], fy[before], fy[inner], outer_y[inner], kick_y[inner]),
         (omega[a], alpha[a], couple[a], couple[b], length[a], over_edge[a], spin_decay[a],
@@ -179,6 +189,15 @@ def rotate_pass(angle, omega, c, s, step):
 
 
 @kernel
+def hold(velocities, held):
+    """Stop the held nodes."""
+    for i in range(held.x.shape[0]):
+        velocities.vx[held.x[i]] = 0.0
+    for i in range(held.y.shape[0]):
+        velocities.vy[held.y[i]] = 0.0
+
+
+@kernel
 def outer_forces(state, forcing, ledger, ramp, u, outer_x, outer_y):
     """Pull, drive, and spring and damper of the crossings, at the nodes that have any."""
     x, y, vx, vy = state.x, state.y, state.vx, state.vy
@@ -259,13 +278,13 @@ def record_energy(row, state, rods, spin, forcing, readouts, ledger, stepping, r
 
 
 @kernel
-def damper_power(state, spin, ledger):
+def damper_power(velocities, spin, ledger):
     """Power that all dampers take (W)."""
-    omega = state.omega
-    lost = ledger.damping * squared_speed(state.vx, state.vy, ledger.mass)
+    vx, vy, omega = velocities
+    lost = ledger.damping * squared_speed(vx, vy, ledger.mass)
     for i in range(omega.shape[0]):
         lost += spin.inertia[i] * spin.damping[i] * omega[i] * omega[i]
-    return lost + joint_power(ledger, state.vx, state.vy)
+    return lost + joint_power(ledger, vx, vy)
 
 
 @kernel

@@ -9,6 +9,7 @@ from __future__ import annotations
 import fiberweb.engines.jit  # noqa: F401  (first: it says where PyElastica's kernels are kept, too)
 
 # isort: split
+from itertools import chain
 
 import elastica as ea
 import numpy as np
@@ -16,8 +17,9 @@ from elastica._rotations import _inv_rotate
 from numba import njit
 
 from fiberweb.engines.base import RUNAWAY, Numerics, Recording, fitted_step, readout_arrays
-from fiberweb.engines.cosserat import kick_before_decay, refuse
+from fiberweb.engines.cosserat import kick_before_decay
 from fiberweb.engines.cosserat import largest_step as largest_step
+from fiberweb.engines.cosserat import refuse as cannot_model
 from fiberweb.engines.stepping import drive_value
 from fiberweb.model.mesh import Mesh
 
@@ -34,6 +36,15 @@ class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Connecti
     """Rods with everything a fibre network needs."""
 
 
+class DampedFirst(Simulator):
+    """The order of PyElastica 0.3.2, which the authors ran: damper, filter, constraints."""
+
+    def constrain_rates(self, time):
+        """Damp, filter and then hold velocities."""
+        for act in chain(self._feature_group_damping, self._feature_group_constrain_rates):
+            act(time=time)
+
+
 class Drive(ea.NoForces):
     """A force pattern times the input u(t)."""
 
@@ -46,6 +57,22 @@ class Drive(ea.NoForces):
         """Add the load at this time."""
         u = drive_value(self.coefficients, self.rate, time)
         system.external_forces[:, self.nodes] += u * self.load
+
+
+class Guide(ea.ConstraintBase):
+    """A node that slides along a slanted line."""
+
+    def __init__(self, *_, node, along, **kwargs):
+        super().__init__(**kwargs)
+        self.node, self.along = node, along
+
+    def constrain_values(self, system, time):
+        """Its position follows from its velocity."""
+
+    def constrain_rates(self, system, time):
+        """Leave it the part of its velocity along the line."""
+        velocity = system.velocity_collection[:, self.node]
+        velocity[:] = (self.along @ velocity) * self.along
 
 
 class Wall(ea.NoForces):
@@ -91,6 +118,16 @@ class ExactDamper(ea.DamperBase):
         system.omega_collection *= self.decay
 
 
+def refuse(mesh: Mesh) -> None:
+    """Raise ValueError if the scene needs what this engine does not model."""
+    cannot_model(mesh)
+    if mesh.scene.dead_band:
+        raise ValueError(
+            f"dead_band = {mesh.scene.dead_band}: PyElastica has had none since 0.3.3; use "
+            "engine = 'cosserat', or dead_band = False"
+        )
+
+
 def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recording:
     """Integrate a mesh with PyElastica.
 
@@ -100,7 +137,7 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
         disturbance: velocity (m/s) out of the plane given to the driven nodes at the start.
 
     Raises:
-        ValueError: crossings without compliance.
+        ValueError: crossings without compliance, or a dead band.
     """
     simulator, rods, step, per_sample = assemble(mesh, numerics)
     for rod, nodes in _driven(mesh, rods):
@@ -136,7 +173,7 @@ def assemble(mesh: Mesh, numerics: Numerics):
     refuse(mesh)
     scene = mesh.scene
     step, per_sample = fitted_step(scene, numerics.time_step)
-    simulator = Simulator()
+    simulator = DampedFirst() if scene.setup == "published" else Simulator()
     rods = [_rod(mesh, fibre) for fibre in range(len(mesh.first) - 1)]
     for fibre, rod in enumerate(rods):
         moved = mesh.start[mesh.first[fibre] : mesh.first[fibre + 1]]
@@ -191,6 +228,12 @@ def _hold(simulator, mesh: Mesh, fibre: int, rod) -> None:
             constrained_position_idx=(int(node),),
             translational_constraint_selector=np.array([*held[node], True]),
         )
+    for node, along in zip(mesh.guided, mesh.guides):
+        if 0 <= node - mesh.first[fibre] < len(held):
+            index = int(node - mesh.first[fibre])
+            simulator.constrain(rod).using(
+                Guide, constrained_position_idx=(index,), node=index, along=np.array([*along, 0.0])
+            )
     if mesh.clamped[fibre]:
         simulator.add_forcing_to(rod).using(Wall, rod=rod)
     else:
@@ -202,11 +245,11 @@ def _hold(simulator, mesh: Mesh, fibre: int, rod) -> None:
 
 
 def _pull(simulator, mesh: Mesh, fibre: int, rod) -> None:
-    far = mesh.pull[mesh.first[fibre + 1] - 1]
+    near, far = mesh.pull[mesh.first[fibre]], mesh.pull[mesh.first[fibre + 1] - 1]
     if far.any():
         simulator.add_forcing_to(rod).using(
             ea.EndpointForces,
-            start_force=np.zeros(3),
+            start_force=MICRONEWTON * np.array([*near, 0.0]),
             end_force=MICRONEWTON * np.array([*far, 0.0]),
             ramp_up_time=max(mesh.scene.tension_ramp, 1e-12),
         )

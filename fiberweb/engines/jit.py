@@ -22,5 +22,7 @@ entry = njit(**_HOW, fastmath={"contract"})
 # of the loop over steps, a third of a small network's time; and a process that compiles runs the
 # same instructions as one that loads them, so that both give the same bits.
 kernel = njit(**_HOW, fastmath={"contract"}, forceinline=True)
-# The same with sums in any order, so that they vectorise: still the same order every time.
+# A kernel where rounding is the subject: no contraction.
+uncontracted = njit(**_HOW, fastmath=False, forceinline=True)
+# A kernel with sums in any order, so that they vectorise: still the same order every time.
 summing = njit(**_HOW, fastmath={"contract", "reassoc"}, forceinline=True)

@@ -86,7 +86,8 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
     (mass,) = packed(layout.mass[interleaving.nodes])
     arguments = (
         state, _scratch(state, interleaving.stride), coefficients(*chain, timing.step, order),
-        *crossings.joint_operators(*chain, timing.step), stepping.build_forcing(*chain), read,
+        *crossings.joint_operators(*chain, timing.step), stepping.build_guides(*chain),
+        stepping.build_forcing(*chain), read,
         energy.build_ledger(*chain, mass), timing,
     )  # fmt: skip
 
@@ -129,13 +130,14 @@ def coefficients(
 
 @entry
 def advance(
-    state, scratch, rods, pairs, groups, forcing, readouts, ledger, timing, first, out, energies
-):
+    state, scratch, rods, pairs, groups, guides, forcing, readouts, ledger, timing,
+    first, out, energies,
+):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Args:
-        state, scratch, rods, pairs, groups, forcing, readouts, ledger, timing: see the classes
-            of these names, and `Stepping` for the last.
+        state, scratch, rods, pairs, groups, guides, forcing, readouts, ledger, timing: see the
+            classes of these names, and `Stepping` for the last.
         first: number of the first sample of `out`.
         out: displacement, (samples, readouts, 2), filled.
         energies: kinetic, elastic, work done, dissipated (samples, 4), filled.
@@ -182,6 +184,7 @@ def advance(
             crossings.pair_pass(pairs, relative, x, y, vx, vy, step)
             crossings.group_pass(groups, before.vx, before.x, kicked, x, vx, step)
             crossings.group_pass(groups, before.vy, before.y, kicked, y, vy, step)
+            stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
             due = energy.steps_due(k - start, every, per_sample)
             if due:

@@ -32,7 +32,8 @@ def fourth_order_layout(mesh: Mesh) -> Layout:
     for fibre, last in enumerate(layout.at[mesh.first[1:] - 1]):
         edges = mesh.edges(fibre)
         even = len(edges) > 3 and np.allclose(edges[-3:], edges[-1], rtol=1e-6)
-        if even and not mesh.held[mesh.first[fibre + 1] - 1].any():
+        end = mesh.first[fibre + 1] - 1
+        if even and not mesh.held[end].any() and end not in mesh.guided:
             element = mesh.scene.density * mesh.scene.area * edges[-1]
             mass[last - 2 : last + 1] += element * np.array([-1 / 24, 1 / 6, -1 / 8])
     return replace(layout, mass=mass)

@@ -43,6 +43,7 @@ class Layout:
     load_x: np.ndarray
     load_y: np.ndarray
     joints: np.ndarray  # padded indices, (joints, 2)
+    guided: np.ndarray  # padded indices of nodes that slide along a slanted line, (guided,)
 
 
 def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
@@ -76,7 +77,7 @@ def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
     return Layout(
         at, x, y, edge, solid, bends, span, voronoi, mass,
         *(_pad(at, size, values) for values in (*free, *pull, *load)),
-        at[mesh.joints].reshape(-1, 2),
+        at[mesh.joints].reshape(-1, 2), at[mesh.guided],
     )  # fmt: skip
 
 

@@ -34,6 +34,14 @@ class Forcing(NamedTuple):
     pull_y: np.ndarray
 
 
+class Guides(NamedTuple):
+    """Nodes that slide along a slanted line, and its direction."""
+
+    nodes: np.ndarray  # (guided,)
+    along_x: np.ndarray
+    along_y: np.ndarray
+
+
 class Readouts(NamedTuple):
     """What is recorded, and from where."""
 
@@ -59,6 +67,13 @@ def build_forcing(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> For
         mesh.drive, scene.drive_rate, scene.tension_ramp, driven, load_x[driven], load_y[driven],
         *pull,
     )  # fmt: skip
+
+
+def build_guides(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Guides:
+    """The guided nodes in the order of the kernels."""
+    # unsigned, since Numba looks for negative indices at every access otherwise
+    nodes = interleaving.place[layout.guided].astype(np.uint64)
+    return Guides(nodes, *np.ascontiguousarray(mesh.guides.T))
 
 
 def build_readouts(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Readouts:
@@ -118,6 +133,20 @@ def apply_forces(forcing, ramp, u, outer_x, outer_y):
         m = forcing.nodes[i]
         outer_x[m] = ramp * forcing.pull_x[m] + u * forcing.load_x[i]
         outer_y[m] = ramp * forcing.pull_y[m] + u * forcing.load_y[i]
+
+
+@kernel
+def guide(guides, x, y, vx, vy, moved):
+    """Leave guided nodes the part of their velocity along the line, and take back what the rest
+    did to their positions in `moved` seconds."""
+    for i in range(guides.nodes.shape[0]):
+        n = guides.nodes[i]
+        tx, ty = guides.along_x[i], guides.along_y[i]
+        across = tx * vy[n] - ty * vx[n]
+        vx[n] += ty * across
+        vy[n] -= tx * across
+        x[n] += moved * ty * across
+        y[n] -= moved * tx * across
 
 
 @kernel

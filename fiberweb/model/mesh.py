@@ -11,7 +11,7 @@ import numpy as np
 from fiberweb.arguments import whole
 from fiberweb.model import authors_mesh
 from fiberweb.model.authors import ELEMENT
-from fiberweb.model.drive import spline
+from fiberweb.model.drive import of_scene as drive_of
 from fiberweb.model.lines import Line, cut, nodes_about
 from fiberweb.model.readouts import places
 from fiberweb.model.scene import Scene
@@ -36,6 +36,8 @@ class Mesh:
         position: rest position of each node, shape (nodes, 2), m.
         first: fibre f has the nodes first[f] to first[f + 1] - 1, shape (fibres + 1,).
         held: which displacements are prevented, shape (nodes, 2), bool.
+        guided: nodes that slide along a slanted line, shape (guided,).
+        guides: unit vectors of these lines, shape (guided, 2).
         clamped: whether the near end of each fibre keeps its direction, shape (fibres,).
         pull: constant force on each node once the ramp is over, shape (nodes, 2), N.
         load: force on each node for u = 1, shape (nodes, 2), N.
@@ -52,6 +54,8 @@ class Mesh:
     position: np.ndarray
     first: np.ndarray
     held: np.ndarray
+    guided: np.ndarray
+    guides: np.ndarray
     clamped: np.ndarray
     pull: np.ndarray
     load: np.ndarray
@@ -93,7 +97,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
             elements per fibre.
 
     Raises:
-        ValueError: elements_per_section below 1, or sliding ends on slanted fibres.
+        ValueError: elements_per_section below 1.
     """
     if elements_per_section is not None:
         elements_per_section = whole("elements_per_section", elements_per_section, 1)
@@ -107,20 +111,22 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     position = np.concatenate([line.points for line in lines])
     first = np.cumsum([0] + [len(line.points) for line in lines])
     joints, stiffness, damping = _joints(scene, lines, first)
-    held, pull = _ends(scene, lines, first)
+    held, guided, guides, pull = _ends(scene, lines, first)
     load = _load(scene, lines, first)
     return Mesh(
         scene=scene,
         position=position,
         first=first,
         held=held,
+        guided=guided,
+        guides=guides,
         clamped=np.full(len(lines), scene.ends == "clamped"),
         pull=pull,
         load=load,
         joints=joints,
         joint_stiffness=stiffness,
         joint_damping=damping,
-        drive=np.ascontiguousarray(spline(scene.seed, scene.duration, scene.drive_rate).c.T),
+        drive=np.ascontiguousarray(drive_of(scene).c.T),
         readouts=_readouts(scene, lines, first),
         start=load * (scene.disturbance / scene.force),
     )
@@ -155,11 +161,12 @@ def _joints(scene: Scene, lines: list[Line], first: np.ndarray):
 
 
 def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
-    """Held displacements and tension of every node."""
+    """Held displacements, nodes on slanted lines with their directions, tension of every node."""
     network = scene.network
     held = np.zeros((first[-1], 2), dtype=bool)
     pull = np.zeros((first[-1], 2))
     held[first[:-1]] = True
+    slanted = {}
     pulled = range(len(lines))
     if scene.setup == "published":
         pulled = authors_mesh.pulled(network)
@@ -168,14 +175,15 @@ def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
         far = first[fibre + 1] - 1
         if scene.ends == "sliding":
             if abs(direction).min() > 1e-12:
-                raise ValueError(
-                    "ends = 'sliding' needs fibres along x or y; a polygon takes 'clamped' or "
-                    "'pinned'"
-                )
-            held[far] = abs(direction) < 0.5
+                slanted[far] = direction
+            else:
+                held[far] = abs(direction) < 0.5
         if fibre in pulled:
             pull[far] = scene.tension * direction
-    return held, pull
+            if scene.setup == "published":
+                pull[first[fibre]] = -pull[far]  # on a held node, where only the filter sees it
+    guided = np.array(list(slanted), dtype=np.int64)
+    return held, guided, np.array([*slanted.values()]).reshape(-1, 2), pull
 
 
 def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:

@@ -20,14 +20,21 @@ NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1, strict=True)]  # what numpy's generator takes
 
-# What each setup does where the scene leaves a field open. `described` is the paper's text; its
-# damping and crossings are unreported there, so these are the calibrated values. `published` is
-# the authors' code.
+# What each setup does where the scene leaves a field open. `described`: the paper's text, and where
+# that leaves something open the authors' code, less its numerics. `compliant`: crossings that give,
+# one way in which a web could remember; its three numbers are calibrated (study `calibration`).
+# `published`: the authors' code.
+NO_NUMERICS = dict(filter_order=0, dead_band=False)
 DESCRIBED = dict(
-    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, filter_order=0, ends="clamped"
+    crossing_stiffness=math.inf, crossing_damping=0.0, damping=10.0, ends="sliding", **NO_NUMERICS
 )
-SETUPS = {("described", topology): DESCRIBED for topology in authors.PHYSICS} | {
-    ("published", topology): values for topology, values in authors.PHYSICS.items()
+COMPLIANT = dict(
+    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, ends="clamped", **NO_NUMERICS
+)
+SETUPS = {
+    "described": dict.fromkeys(authors.PHYSICS, DESCRIBED),
+    "published": authors.PHYSICS,
+    "compliant": dict.fromkeys(authors.PHYSICS, COMPLIANT),
 }
 
 
@@ -40,7 +47,8 @@ class Scene:
 
     Attributes:
         network: from `crosshatch` or `polygon`.
-        setup: "described" (the paper's text) or "published" (the authors' code).
+        setup: "described" (the paper's text), "published" (the authors' code) or "compliant" (with
+            crossings that give).
         force: F_max (N), which the input multiplies; Eq. 3 if None.
         tension: constant pull along each fibre at its far end (N).
         duration: s.
@@ -55,6 +63,8 @@ class Scene:
         damping: rate at which velocity decays (1/s).
         filter_order: of the Laplace filter applied to velocities at every step, up to 6; 0 for
             none.
+        dead_band: bend as the authors' rotations do, which see no angle between neighbouring
+            elements below some 1e-5 rad (`fiberweb.engines.authors_rotations`).
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
         tension_ramp: time over which the tension grows from zero (s).
@@ -67,7 +77,7 @@ class Scene:
     """
 
     network: Network
-    setup: Literal["described", "published"] = "described"
+    setup: Literal[tuple(SETUPS)] = "described"
     force: Positive | None = None
     tension: NotNegative = 0.01
     duration: Positive = 100.0
@@ -81,6 +91,7 @@ class Scene:
     crossing_damping: NotNegative | None = None
     damping: NotNegative | None = None
     filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
+    dead_band: Annotated[bool, Field(strict=True)] | None = None
     ends: Literal["clamped", "sliding", "pinned"] | None = None
     tension_ramp: NotNegative = 0.25
     disturbance: NotNegative = 0.0
@@ -98,7 +109,7 @@ class Scene:
             except ValidationError as error:
                 raise ValueError(sentence(error, name)) from None
             object.__setattr__(self, name, value)
-        for name, value in SETUPS[self.setup, self.network.topology].items():
+        for name, value in SETUPS[self.setup][self.network.topology].items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
         if self.force is None:

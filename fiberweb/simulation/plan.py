@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fiberweb.model.mesh import Mesh
 
 ACCURACIES = {"draft": 2, "standard": 4, "fine": 8, "reference": 16}  # elements per section
-DEFAULT_ENGINE = {"described": "kirchhoff", "published": "cosserat"}
+DEFAULT_ENGINE, AUTHORS_ENGINE = "kirchhoff", "cosserat"
 # Shares of the stability limit that the automatic step takes, and the smaller ones from a share of
 # EA in force or tension on: compression, tension and bow stiffen a fibre beyond the straight one
 # that the limit is of. Source: found_loaded_s of stability.csv, where steps of 0.87 to 1.0 of the
@@ -93,8 +93,8 @@ def plan(
 
     Args:
         scene: to be run.
-        accuracy: "draft", "standard" (the default), "fine" or "reference"; of the described
-            setup only, and instead of engine, mesh and step.
+        accuracy: "draft", "standard" (the default), "fine" or "reference"; not of the
+            published setup, and instead of engine, mesh and step.
         engine: "kirchhoff", "cosserat" or "elastica".
         elements_per_section: see `fiberweb.model.mesh.build`.
         time_step: s; by default 0.9 of the limit (see `safety`), or the authors' 5 us in the
@@ -168,7 +168,8 @@ def request(
             f"tension = {scene.tension:g} N: no fibre holds a pull of EA = "
             f"{scene.axial_stiffness:g} N or more, so take a smaller one"
         )
-    chosen = engine or DEFAULT_ENGINE[scene.setup]
+    default = AUTHORS_ENGINE if scene.setup == "published" else DEFAULT_ENGINE
+    chosen = engine or default
     if engine is None and stubby(scene) and not load(chosen).MODELS_SHEAR:
         other = next(name for name in ENGINES if load(name).MODELS_SHEAR)
         raise ValueError(

@@ -9,7 +9,7 @@ import xarray as xr
 
 from fiberweb.engines import load
 from fiberweb.engines.base import Numerics, Recording
-from fiberweb.model.drive import spline
+from fiberweb.model import drive
 from fiberweb.model.mesh import Mesh
 from fiberweb.source import source_hash
 
@@ -37,7 +37,7 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     moved = recording.displacement
     unstable = recording.unstable_at is not None
     packages = load(numerics.engine).PACKAGES
-    u = spline(scene.seed, scene.duration, scene.drive_rate)(scene.times)
+    u = drive.of_scene(scene)(scene.times)
     data = xr.Dataset(
         {
             "input": ("time", u, {"long_name": "input u", "units": "1"}),

@@ -5,12 +5,15 @@ from __future__ import annotations
 from importlib import import_module
 from types import ModuleType
 
+from fiberweb.model.scene import SETUPS
+
 STUDIES = (
     "topology",
     "ridge",
     "size",
     "pretension",
     "features",
+    "capacity_origin",
     "memory_origin",
     "calibration",
     "noise",
@@ -42,12 +45,12 @@ def load(name: str) -> ModuleType:
 
 def setups(name: str) -> tuple[str, ...]:
     """The setups that a study runs in."""
-    return getattr(load(name), "SETUPS", ("described", "published"))
+    return getattr(load(name), "SETUPS", tuple(SETUPS))
 
 
 def waits(name: str, setup: str) -> bool:
     """Whether the runs of a study start from the best forces of the ridge."""
-    return setup == "described" and getattr(load(name), "AFTER_RIDGE", False)
+    return setup != "published" and getattr(load(name), "AFTER_RIDGE", False)
 
 
 def judged_by(setup: str) -> list[str]:

@@ -5,7 +5,7 @@ A study is a folder here, listed in `fiberweb.studies`. Its `__init__` has
 - `SECTION`, its section of the config;
 - `points(section, lab)`, which yields its runs;
 - `TABLES`, by file name, and `FIGURES`, by name, of what is made of them;
-- if it needs them: `SETUPS` that it runs in, where not both; `AFTER_RIDGE = True` if it starts from
+- if it needs them: `SETUPS` that it runs in, where not all; `AFTER_RIDGE = True` if it starts from
   the best forces of the ridge; `check(section, lab)`, which raises ValueError, one sentence; and
   `JUDGED_BY`, the files that the rules in its `claims.py` read.
 
@@ -37,7 +37,7 @@ class Point:
     Attributes:
         scene: the physics.
         choice: where its force comes from: "eq3", "grid", "best_c_nl", "best_c_m",
-            "authors_c_nl", "authors_c_m", "authors" or "buckling".
+            "authors_c_nl", "authors_c_m", "authors", "buckling" or "mesh".
         numerics: keyword arguments of `fiberweb.simulate` instead of the config's; None for those.
     """
 
@@ -67,7 +67,7 @@ class Lab:
     """What every study is given beside its own section.
 
     Attributes:
-        setup: "described" or "published".
+        setup: one of `fiberweb.model.scene.SETUPS`.
         defaults: fields of a scene in this setup, as in the config.
         map: see `ForceMap`.
         thinned: whether the published setup runs only what two cores can afford.

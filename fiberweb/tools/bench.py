@@ -28,7 +28,7 @@ from fiberweb.engines.base import Numerics, steps_per_sample
 from fiberweb.model import authors
 from fiberweb.model.mesh import build
 from fiberweb.simulation.plan import ACCURACIES, plan
-from fiberweb.validation.accuracy import difference
+from fiberweb.validation.accuracy import difference, modelled
 
 WINDOWS = 5  # odd, for a median
 OLD_STEPS = 300  # of PyElastica in a window
@@ -82,7 +82,8 @@ def compare(scene: Scene, engine: str, elements: int | None) -> None:
     """PyElastica on the authors' mesh and step against ours on a mesh of ours."""
     old = Numerics("elastica", None, authors.STEP)
     new = plan(scene, engine=engine, elements_per_section=elements).numerics
-    old_mesh, new_mesh = build(scene), build(scene, new.elements_per_section)
+    old_mesh = modelled("elastica", scene, None)
+    new_mesh = build(scene, new.elements_per_section)
     simulator, _, step, per_sample = elastica.assemble(old_mesh, old)
     stepper, now = PositionVerlet(), 0.0
     now = elastica.run_steps(simulator, stepper, now, step, OLD_STEPS)  # compiles
@@ -116,7 +117,7 @@ def displacement(scene: Scene, engine: str, elements: int, step: float | None = 
     if step is None:
         step = plan(short, engine=engine, elements_per_section=elements).numerics.time_step
     numerics = Numerics(engine, elements, step)
-    return engines.load(engine).integrate(build(short, elements), numerics).displacement
+    return engines.load(engine).integrate(modelled(engine, short, elements), numerics).displacement
 
 
 def authors_displacement(scene: Scene) -> np.ndarray:

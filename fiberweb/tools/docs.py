@@ -15,9 +15,9 @@ from pathlib import Path
 import pandas as pd
 
 from fiberweb.claims.judge import join
+from fiberweb.model.scene import SETUPS
 
 DOCS = Path(__file__).parents[2] / "docs"
-SETUPS = ("described", "published")
 START, END = "<!-- table:", "<!-- end -->"
 BLOCK = re.compile(rf"^{START} (\S+) -->\n(.*?)^{END}$", re.MULTILINE | re.DOTALL)
 NONE, CAPACITY = "–", "+-"

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from fiberweb.engines import load
+from fiberweb.engines import accepts, load
 from fiberweb.engines.base import Numerics, fitted_step
 from fiberweb.model import authors
 from fiberweb.model.mesh import Mesh, build
@@ -51,8 +51,8 @@ class Case:
     """A network and how it is integrated.
 
     `elements` None is the authors' mesh; `step` is in s, or None for `share` of the limit;
-    `order` is that of an engine that has several, None for the highest; `crossing` overrides
-    its stiffness and damping.
+    `order` is that of an engine that has several, None for the highest; `stiff`: crossings are
+    springs of `STIFF` and not one point, as they always are to an engine that has only springs.
     """
 
     engine: str
@@ -64,21 +64,16 @@ class Case:
     share: float = SAFETY
     step: float | None = None
     order: int | None = None
-    crossing: tuple[float, float] | None = None
+    stiff: bool = False
 
     def mesh(self, duration: float) -> Mesh:
         """The mesh of a run of this length (s)."""
-        stiffness, damping = self.crossing or (None, None)
-        scene = Scene(
-            crosshatch(self.n, length=self.length),
-            self.setup,
-            duration=duration,
-            crossing_stiffness=stiffness,
-            crossing_damping=damping,
-        )
-        if self.setup == "described":
+        scene = Scene(crosshatch(self.n, length=self.length), self.setup, duration=duration)
+        if self.setup != "published":
             scene = replace(scene, force=scene.force * self.buckling / scene.buckling_number)
-        return build(scene, self.elements)
+        if self.stiff:
+            scene = replace(scene, crossing_stiffness=STIFF)
+        return modelled(self.engine, scene, self.elements)
 
     def numerics(self, mesh: Mesh) -> Numerics:
         """Its numerics, with the step that is really taken."""
@@ -138,6 +133,16 @@ def _step_time(mesh: Mesh, numerics: Numerics, window: int) -> float:
     start = time.process_time()
     engine.run_steps(simulator, stepper, now, step, window)
     return (time.process_time() - start) / window
+
+
+def modelled(engine: str, scene: Scene, elements: int | None) -> Mesh:
+    """The mesh of a scene as an engine can have it: with springs of `STIFF` where it cannot join
+    fibres in one point, and without a dead band where it has none."""
+    mesh = build(scene, elements)
+    if accepts(engine, mesh):
+        return mesh
+    stiffness = min(scene.crossing_stiffness, STIFF)
+    return build(replace(scene, crossing_stiffness=stiffness, dead_band=False), elements)
 
 
 def difference(trajectory: np.ndarray, reference: np.ndarray) -> float:
@@ -246,22 +251,21 @@ def _published(n: int, length: float, window: int) -> list[tuple]:
 
 
 def rungs(length: float, buckling: float) -> list[tuple[str, str, Case]]:
-    """From PyElastica down to the default engine, one change at a time; then the crossings."""
+    """From PyElastica down to the default engine and its crossings, one change at a time."""
     planar = Case("cosserat", 4, 8, length, buckling)
     mesh = planar.mesh(1.0)
     same = planar.numerics(mesh).time_step
-    lumped = replace(planar, engine="kirchhoff", order=2)
-    default = Case("kirchhoff", 4, 4, length, buckling)
-    stiff = replace(default, crossing=(STIFF, 0.0))
+    lumped = replace(planar, engine="kirchhoff", order=2, stiff=True)
+    fine = replace(lumped, order=None)
+    coarse = replace(fine, elements=4)
     return [
         ("elastica", "PyElastica, in space", replace(planar, engine="elastica", step=same)),
         ("planar", "motion in the plane", replace(planar, step=same)),
         ("unshearable", "no shear, no rotary inertia", replace(lumped, step=same)),
         ("step", "the longer step this allows", lumped),
-        ("fourth order", "fourth-order bending", replace(lumped, order=None)),
-        ("mesh", "4 elements a section, not 8", default),
-        ("pins", "crossings of 1e6 N/m, no damper", stiff),
-        ("merged", "such crossings as one point", replace(default, crossing=(np.inf, 0.0))),
+        ("fourth order", "fourth-order bending", fine),
+        ("mesh", "4 elements a section, not 8", coarse),
+        ("merged", "crossings as one point, not springs", replace(coarse, stiff=False)),
     ]
 
 

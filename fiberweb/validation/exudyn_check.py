@@ -45,8 +45,8 @@ def single_fibre(spacing: float = 0.1, sections: int = 3) -> Network:
 
 FORCE = 0.109  # N: B = 0.7 of the 2x2 network
 SCENES = {
-    "single fibre": Scene(single_fibre(), force=5e-3, duration=0.4, damping=10.0),
-    "2x2": Scene(crosshatch(2, spacing=0.1), force=FORCE, duration=0.4, damping=10.0),
+    "single fibre": Scene(single_fibre(), "compliant", force=5e-3, duration=0.4, damping=10.0),
+    "2x2": Scene(crosshatch(2, spacing=0.1), "compliant", force=FORCE, duration=0.4, damping=10.0),
 }
 
 

@@ -73,6 +73,7 @@ class Point:
         unit = Scene(network, diameter=self.diameter, force=1.0)
         return Scene(
             network,
+            "compliant",
             diameter=self.diameter,
             tension=self.tension,
             force=(self.buckling if buckling is None else buckling) / unit.buckling_number,

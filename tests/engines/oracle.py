@@ -72,7 +72,7 @@ def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
     for fibre, last in enumerate(mesh.first[1:] - 1):
         length = mesh.edges(fibre)
         even = len(length) > 3 and np.allclose(length[-3:], length[-1])
-        if order == 4 and even and not mesh.held[last].any():
+        if order == 4 and even and not mesh.held[last].any() and last not in mesh.guided:
             element = mesh.scene.density * mesh.scene.area * length[-1]
             mass[[last, last - 1, last - 2]] = element * np.array([3 / 8, 7 / 6, 23 / 24])
     return mass
@@ -108,6 +108,7 @@ def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray
             drag = -damper / mass[nodes, None] - scene.damping * np.eye(count)
             flow = expm(step * np.block([[drag, push], [np.zeros((2, count + 2))]]))
             new[nodes] = flow[:count, :count] @ v[nodes] + flow[:count, count:]
+        _guide(mesh, new)
         v = new
         x = x + 0.5 * step * v
         out.append(x - mesh.position)
@@ -149,9 +150,12 @@ def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
             spin = spins[number] + kick * torque * stretch / inertia[number]
             spin *= np.exp(-step * _spin_damping(scene, mass[f], inertia[number], stretch))
             spun.append(_filtered(spin, scene.filter_order))
-        v = decay * (v + kick * np.where(mesh.held, 0.0, force / mass[:, None]))
+        late = scene.setup == "published"  # held nodes stop after damper and filter, not before
+        v = decay * (v + kick * np.where(mesh.held & (not late), 0.0, force / mass[:, None]))
         for f in fibres:
             v[f] = np.column_stack([_filtered(column, scene.filter_order) for column in v[f].T])
+        v[mesh.held] = 0.0
+        _guide(mesh, v)
         spins = spun
         x = x + 0.5 * step * v
         angles = [a + 0.5 * step * w for a, w in zip(angles, spins)]
@@ -186,7 +190,7 @@ def _cosserat_fibre(scene, x, v, angle, spin, rest_angle, rest_length, inertia, 
 
 def _spin_damping(scene, mass, inertia, stretch):
     """Decay rates of angular velocities: the authors' in mm-g-s, or uniform."""
-    if scene.setup == "described":
+    if scene.setup != "published":
         return np.full(len(stretch), scene.damping)
     element = 0.5 * (mass[1:] + mass[:-1])
     element[0] += 0.5 * mass[0]
@@ -201,6 +205,12 @@ def _filtered(rate, order: int):
         inner = (2 * term[1:-1] - term[:-2] - term[2:]) / 4
         term = np.r_[0.0, inner, 0.0]
     return rate - term if order else rate
+
+
+def _guide(mesh: Mesh, v) -> None:
+    """Leave guided nodes the velocity along their lines."""
+    for node, along in zip(mesh.guided, mesh.guides):
+        v[node] = np.outer(along, along) @ v[node]
 
 
 def _outer(mesh: Mesh, time: float) -> np.ndarray:

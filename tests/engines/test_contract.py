@@ -49,7 +49,8 @@ def small(**fields):
 def test_what_an_engine_does_not_model_it_refuses(name):
     cosserat = name != "kirchhoff"
     assert engines.accepts(name, small())
-    assert engines.accepts(name, small(setup="published")) == cosserat
+    assert engines.accepts(name, small(setup="published")) == (name == "cosserat")
+    assert engines.accepts(name, small(setup="published", dead_band=False)) == cosserat
     assert engines.accepts(name, small(filter_order=3)) == cosserat
     assert engines.accepts(name, small(crossing_stiffness=np.inf)) != cosserat
     filtered = build(Scene(crosshatch(2, spacing=0.1), filter_order=3), 1)  # three elements

@@ -48,6 +48,6 @@ rule claims:
             [RECIPES.claims(setup, authors_tables()) for setup in SUFFIXES],
         ),
     message:
-        "The claims of both setups side by side"
+        "The claims of all setups side by side"
     script:
         "../scripts/join_claims.py"

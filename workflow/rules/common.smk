@@ -11,9 +11,10 @@ from snakemake.exceptions import WorkflowError
 from fiberweb import studies
 from fiberweb.config import check_folders, load
 from fiberweb.errors import unknown_key
+from fiberweb.layers import check_keys, typed
+from fiberweb.model.scene import SETUPS
 from fiberweb.provenance import add_call
 from fiberweb.recipes import BEST, Recipes, code, digest_of
-from fiberweb.layers import check_keys, typed
 from fiberweb.runs import check, run_table, runs
 from fiberweb.written import cut_short
 
@@ -21,7 +22,7 @@ from fiberweb.written import cut_short
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # a notebook sets its own, without which matplotlib cannot even be imported elsewhere
 os.environ["MPLBACKEND"] = "agg"
-SUFFIXES = {"described": "", "published": "-published"}  # of figures
+SUFFIXES = {setup: f"-{setup}" for setup in SETUPS} | {"described": ""}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 
 

@@ -1,4 +1,4 @@
-"""The described setup's unreported parameters against T1 to T4."""
+"""The compliant setup's three parameters against T1 to T4."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fiberweb.studies.base import Figure, Lab, Point, Table, crosshatch, every
 
 
 class CalibrationSection(Section):
-    """The described setup's unreported parameters against T1 to T4."""
+    """The compliant setup's three parameters against T1 to T4."""
 
     n: Some[Size] = key([4, 8], "sizes of the crosshatch, N; 8 among them, for T1 to T4")
     length: Positive = key(0.5, "fibre length", "m")
@@ -31,7 +31,7 @@ class CalibrationSection(Section):
 
 
 SECTION = CalibrationSection
-SETUPS = ("described",)
+SETUPS = ("compliant",)
 
 
 def points(section: CalibrationSection, lab: Lab) -> Iterator[Point]:

@@ -93,7 +93,7 @@ def _maps(part: SubFigure, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
     bar.outline.set_linewidth(0.4)
     handles = {
         "least misfit": Line2D([], [], **BEST),
-        "defaults of the described setup": Rectangle((0, 0), 1, 1, **OUTLINE),
+        "defaults of the compliant setup": Rectangle((0, 0), 1, 1, **OUTLINE),
     }
     if (dense["status"] == "unstable").any():
         handles["unstable run"] = Line2D([], [], **style.UNSTABLE)

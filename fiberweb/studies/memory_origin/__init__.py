@@ -12,7 +12,8 @@ from fiberweb.model.scene import SETUPS as OF_SETUPS
 from fiberweb.sections import NotNegative, Positive, PositiveOrPinned, Section, Size, Some, key
 from fiberweb.studies.base import Figure, Lab, Point, crosshatch, input_baselines, one_row_per_run
 
-AUTHORS = OF_SETUPS["published", "crosshatch"]
+AUTHORS = OF_SETUPS["published"]["crosshatch"]
+SETUPS = ("compliant", "published")
 
 
 class MemoryOriginSection(Section):

@@ -43,7 +43,7 @@ COLUMNS = {  # of panel b: title and label of x
 
 
 def draw(given: dict, setup: str, path: str | Path) -> Figure:
-    """Draw the study, as `fiberweb.figures` says: panels a and b of the described setup, of the
+    """Draw the study, as `fiberweb.figures` says: panels a and b of the compliant setup, of the
     published one the authors' networks with and without the filter.
 
     Args:
@@ -60,7 +60,7 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
         else:
             figure = style.figure(style.DOUBLE, 174.0)
             top, bottom = figure.subfigures(2, 1, height_ratios=[66, 108])
-            style.letter(top, "a", "What carries memory (described setup)")
+            style.letter(top, "a", "What carries memory (compliant setup)")
             style.letter(bottom, "b", "One thing at a time")
             families = _families(rows)
             _totals(top, _described_series(families), rows, baseline)

@@ -32,7 +32,7 @@ AFTER_RIDGE = True
 def points(section: SizeSection, lab: Lab) -> Iterator[Point]:
     """Every N at the best force of each spacing; in the published setup at the authors' forces,
     at their step and at a stable one."""
-    if lab.setup == "described":
+    if lab.setup != "published":
         for (choice, spacing), forces in lab.map.best.items():
             for force, n in product(forces, section.n):
                 yield Point(lab.scene(crosshatch(n, spacing=spacing), force=force), choice)

@@ -32,6 +32,7 @@ class DiagonalsSection(Section):
     published: Literal["all", "skip-one"] = key(
         "skip-one", "as the authors' code does: diameters, and vertices two apart"
     )
+    compliant: Literal["all", "skip-one"] = key("all", "as the text says", "", NETWORK)
 
 
 class TopologySection(Section):

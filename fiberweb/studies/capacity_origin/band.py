@@ -1,0 +1,99 @@
+"""How wide the authors' dead band is, how it grows, and how far neighbouring elements turn.
+
+Directors are not part of a response, so the run is repeated and looked at now and then.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from fiberweb.engines import load
+from fiberweb.engines.base import Numerics
+from fiberweb.model.mesh import Mesh, build
+from fiberweb.model.scene import Scene
+from fiberweb.simulation import dataset
+
+SHARES = (0.1, 0.5, 0.9)  # quantiles over the inner nodes
+BINS = np.arange(-9.0, -0.95, 0.1)  # log10 of an angle in rad
+BAND_COLUMNS = (
+    "setup", "time_s", *(f"turn_{share:g}_rad" for share in SHARES),
+    *(f"band_{share:g}_rad" for share in SHARES), "share_inside", "curvature_per_m",
+    "surface_strain", "moment_Nm", "bow_m",
+)  # fmt: skip
+
+
+class Look(NamedTuple):
+    """What is seen at one time: at each inner node of a fibre, both of shape (nodes,), rad."""
+
+    time: float  # s
+    turn: np.ndarray  # angle between the elements beside it
+    band: np.ndarray  # half width of the dead band there
+
+
+def looks(response_path: str | Path, every: float) -> tuple[Mesh, list[Look]]:
+    """The mesh of a run, and looks at it every so many seconds."""
+    attrs = dataset.load(response_path).attrs
+    scene = Scene.from_json(attrs["scene"])
+    mesh = build(scene)
+    inner = np.flatnonzero(_inner(mesh))
+    seen: list[Look] = []
+
+    def watch(sample: int, angle: np.ndarray, length2: np.ndarray) -> None:
+        time = sample / scene.sample_rate
+        if time < len(seen) * every - 1e-9:
+            return
+        turn = abs(angle[inner] - angle[inner - 1])
+        # the couple is zero while the squared turn is below the sum of what both have grown by
+        band = np.sqrt(np.maximum(length2[inner] + length2[inner - 1] - 2.0, 0.0))
+        seen.append(Look(time, turn, band))
+
+    load(attrs["engine"]).integrate(
+        mesh, Numerics(attrs["engine"], None, attrs["time_step"]), watch
+    )
+    return mesh, seen
+
+
+def growth(response_path: str | Path, every: float) -> pd.DataFrame:
+    """One row a look: quantiles of turns and of the band's half width (rad), the share of nodes
+    that bend freely because their turn is inside; and what else would hide the median band: a
+    curvature (1/m), a strain at the surface, a moment (N m), a bow of one section (m)."""
+    mesh, seen = looks(response_path, every)
+    scene = mesh.scene
+    element = mesh.edges(0)[0]
+    rows = []
+    for time, turn, band in seen:
+        curvature = np.median(band) / element
+        rows.append(
+            (
+                scene.setup, time, *np.quantile(turn, SHARES), *np.quantile(band, SHARES),
+                np.mean(turn < band), curvature, 0.5 * scene.diameter * curvature,
+                scene.bending_stiffness * curvature, curvature * scene.network.spacing**2 / 8,
+            )
+        )  # fmt: skip
+    return pd.DataFrame(rows, columns=list(BAND_COLUMNS))
+
+
+def histogram(response_path: str | Path, every: float) -> pd.DataFrame:
+    """Share of all nodes and looks in each bin of the logarithm of their turn, and of their band:
+    columns setup, from_rad, to_rad, turn, band."""
+    mesh, seen = looks(response_path, every)
+    counts = {}
+    for name in ("turn", "band"):
+        values = np.concatenate([getattr(look, name) for look in seen[1:]])  # all are 0 at first
+        logs = np.clip(np.log10(np.maximum(values, 1e-30)), BINS[0], BINS[-1])
+        counts[name] = np.histogram(logs, BINS)[0] / len(values)
+    edges = 10.0**BINS
+    return pd.DataFrame(
+        {"setup": mesh.scene.setup, "from_rad": edges[:-1], "to_rad": edges[1:], **counts}
+    )
+
+
+def _inner(mesh: Mesh) -> np.ndarray:
+    """Whether each element, of all fibres in a row, follows another of its fibre."""
+    inner = np.ones(mesh.elements, dtype=bool)
+    inner[mesh.first[:-1] - np.arange(len(mesh.first) - 1)] = False
+    return inner

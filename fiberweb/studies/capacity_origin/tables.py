@@ -1,0 +1,42 @@
+"""The runs of the study, all scored as the authors score, so that they can stand beside theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from fiberweb.scoring import capacity, tables
+from fiberweb.simulation import dataset
+
+
+def table(
+    response_paths: Iterable[str | Path], choices: Sequence[str], alpha: float
+) -> pd.DataFrame:
+    """One row a run: `tables.COLUMNS`, force_choice, filter_order, dead_band and
+    `tables.NUMERICS`.
+
+    Args:
+        response_paths: of published scenes with filter and dead band on or off, and of the
+            described ones.
+        choices: of each, see `fiberweb.studies.base.Point`.
+        alpha: ridge penalty.
+    """
+    frames = [
+        tables.rows(
+            [_scored(path, alpha)], force_choice=choice,
+            filter_order=_of_scene("filter_order"), dead_band=_of_scene("dead_band"),
+            **tables.NUMERICS,
+        )
+        for path, choice in zip(response_paths, choices, strict=True)
+    ]  # fmt: skip
+    return pd.concat(frames, ignore_index=True)
+
+
+def _of_scene(field: str):
+    return lambda scene, _: int(getattr(scene, field))
+
+
+def _scored(path: str | Path, alpha: float):
+    return capacity.score(dataset.load(path), scoring="published", alpha=alpha)
