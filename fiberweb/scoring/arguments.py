@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fiberweb.arguments import check_names, shown, whole
 from fiberweb.model.readouts import AXES
-from fiberweb.model.scene import Scene
+from fiberweb.model.scene import SETUPS, Scene
 from fiberweb.scoring.regression import Options
 
 if TYPE_CHECKING:
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 INPUT, DISPLACEMENT = {"input": ("time",)}, {"displacement": ("time", "readout", "axis")}
 ATTRIBUTES = {
     "status": "'ok' or 'unstable'",
-    "setup": "'described' or 'published'",
-    "sample_rate": "a number in Hz",
+    "setup": f"one of {', '.join(map(repr, SETUPS))}",
 }
 
 
@@ -40,7 +39,7 @@ def check_input(response, scoring: str | None, options: dict) -> None:
     _check_kind(response)
     _check_variables(response, INPUT)
     # its setup says how a response is scored, unless the caller does
-    _check_attributes(response, ("sample_rate",) if scoring else ("setup", "sample_rate"))
+    _check_attributes(response, () if scoring else ("setup",))
 
 
 def check_orders(orders) -> int:

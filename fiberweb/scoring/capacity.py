@@ -9,16 +9,15 @@ polynomials P_k(u(t)), C_m its mean over the recall targets u(t - tau), tau = 0 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fiberweb.model.readouts import AXES, as_signals
-from fiberweb.scoring import arguments
-from fiberweb.scoring.regression import Fit, Options, checked, fit_targets, mean_of
+from fiberweb.scoring import arguments, recording
+from fiberweb.scoring.regression import Fit, Options, checked, fit_targets, joined, mean_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -104,8 +103,8 @@ def score_arrays(
     return _assemble(
         orders,
         lags / sample_rate,
-        _score_fit(nonlinear, options.scoring, horizon),
-        _score_fit(memory, options.scoring, horizon),
+        _score_fits(nonlinear, options.scoring, horizon),
+        _score_fits(memory, options.scoring, horizon),
     )
 
 
@@ -128,21 +127,11 @@ def predict(
         if not 0 <= lag <= options.horizon:
             raise ValueError(f"lag = {lag:g} s is outside 0 to horizon = {options.horizon:g} s")
     frames = [round(lag * sample_rate) for lag in lags]
-    fits = fit_targets(u, readouts, orders, frames, round(options.horizon * sample_rate), options)
+    both = fit_targets(u, readouts, orders, frames, round(options.horizon * sample_rate), options)
+    fits = [joined(each) for each in both]
     rows = np.hstack([fit.test for fit in fits]).any(axis=1)
     values = [np.where(f.test, v, np.nan)[rows] for f in fits for v in (f.estimate, f.target)]
     return Traces((np.flatnonzero(rows) + options.skip) / sample_rate, *values)
-
-
-def own_scoring(response: xr.Dataset) -> str:
-    """The scoring of a response's own setup: 'published', or 'clean' for the described one."""
-    return "published" if response.attrs["setup"] == "published" else "clean"
-
-
-def signals(response: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Input (T,) and signals (T, 2m) of a response, ordered as by `fiberweb.model.readouts`."""
-    moved = response["displacement"].transpose("time", "readout", "axis")
-    return response["input"].values, as_signals(*(moved.sel(axis=a).values for a in AXES))
 
 
 def traces(
@@ -156,9 +145,12 @@ def traces(
     with traces named like 'P4' and '200 ms'; errors as there."""
     import xarray as xr
 
-    rate = float(response.attrs["sample_rate"])
-    scoring = scoring or own_scoring(response)
-    estimates = predict(*signals(response), rate, orders, lags, scoring=scoring, **options)
+    arguments.check(response, scoring, options)
+    scoring = scoring or recording.own_scoring(response)
+    u, rate = recording.scored_input(response, scoring), recording.sample_rate(response)
+    estimates = predict(
+        u, recording.signals(response), rate, orders, lags, scoring=scoring, **options
+    )
     target = np.hstack([estimates.nonlinear_target, estimates.memory_target]).T
     estimate = np.hstack([estimates.nonlinear, estimates.memory]).T
     known = np.isfinite(target)
@@ -181,26 +173,27 @@ def score(
 ) -> xr.Dataset:
     """The fields of `Capacity` for one response, over coordinates ``order`` and ``lag`` (s).
 
-    response: ``input(time)``; ``displacement(time, readout, axis)`` in m, axis 'x' and 'y'; attrs
-    ``status`` ('ok' or 'unstable'), ``setup`` ('described' or 'published'), ``sample_rate`` in Hz.
-    Signals: see `signals`. scoring None: 'published' for that setup,
-    else 'clean'. options: fields of `Options`. Errors as in `score_arrays`; but an unstable
-    response is a result: all NaN, and the attr ``status`` says so.
+    response: ``input(time)``; ``displacement(time, readout, axis)`` in m, axis 'x' and 'y'; time in
+    s, evenly spaced, which says how many frames a lag is; attrs ``status`` ('ok' or 'unstable') and
+    ``setup``. Input and signals: see `fiberweb.scoring.recording`. scoring None: 'published' for
+    that setup, else 'clean'. options: fields of `Options`. Errors as in `score_arrays`, and for
+    uneven time; but an unstable response is a result: all NaN, and the attr ``status`` says so.
     """
     import xarray as xr  # slow to import, and arrays alone do not need it
 
     arguments.check(response, scoring, options)
     orders = arguments.check_orders(orders)
-    scoring = scoring or own_scoring(response)
+    scoring = scoring or recording.own_scoring(response)
     chosen = Options(scoring, **options)
-    rate = float(response.attrs["sample_rate"])
+    rate = recording.sample_rate(response)
     if response.attrs["status"] == "unstable":
         lags = np.arange(round(chosen.horizon * rate) + 1) / rate
         nan_orders, nan_lags = np.full(orders, np.nan), np.full(len(lags), np.nan)
         unknown = ((*[c] * 3, math.nan) for c in (nan_orders, nan_lags))
         capacity = _assemble(np.arange(1, orders + 1), lags, *unknown)
     else:
-        capacity = score_arrays(*signals(response), rate, orders, scoring=scoring, **options)
+        u, moved = recording.scored_input(response, scoring), recording.signals(response)
+        capacity = score_arrays(u, moved, rate, orders, scoring=scoring, **options)
     variables = {
         stem + suffix: (dims, getattr(capacity, stem + suffix), _labels(f"{what}, {part}"))
         for stem, (dims, what) in _VARIABLES.items()
@@ -212,7 +205,7 @@ def score(
         "lag": ("lag", capacity.lags, _labels("recall lag", "s")),
     }
     attrs = {key: response.attrs[key] for key in _KEPT if key in response.attrs}
-    attrs["n_signals"] = 2 * response.sizes["readout"]
+    attrs |= {"sample_rate": rate, "n_signals": 2 * response.sizes["readout"]}
     attrs |= asdict(chosen) | {"shuffle": int(chosen.shuffle)}  # NetCDF has no booleans
     return xr.Dataset(variables, coords, attrs)
 
@@ -254,18 +247,25 @@ def _clipped_mean(c: np.ndarray) -> float:
     return float(np.maximum(c, 0.0).mean())  # np.maximum lets the NaN of an unstable run through
 
 
-def _score_fit(fit: Fit, scoring: str, block: int) -> tuple:
+def _score_fits(fits: Iterable[Fit], scoring: str, block: int) -> tuple:
     """(c, c of the training part, raw c), each (q,), and the standard error of the total."""
+    sums = [_sums(fit, scoring, block) for fit in fits]
+    test, train, raw = (np.concatenate(each, axis=-1) for each in zip(*sums, strict=True))
+    c, c_train, c_raw = (_capacity(each) for each in (test.sum(axis=1), train, raw))
+    lowest = 0.0 if scoring == "published" else -np.inf
+    return np.maximum(c, lowest), np.maximum(c_train, lowest), c_raw, _bootstrap_error(test)
+
+
+def _sums(fit: Fit, scoring: str, block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`_block_sums` of the test part; of the training part, and of the test part as it is, summed
+    over the blocks."""
     test = raw = _block_sums(fit.target, fit.estimate, fit.test, block)
     train = fit.target, fit.estimate
-    lowest = -np.inf
     if scoring == "published":
         test = _block_sums(*_replace_overshoot(fit, fit.test), fit.test, block)
         train = _replace_overshoot(fit, fit.train)
-        lowest = 0.0
     train = _block_sums(*train, fit.train, block)
-    c, c_train, c_raw = (_capacity(sums.sum(axis=1)) for sums in (test, train, raw))
-    return np.maximum(c, lowest), np.maximum(c_train, lowest), c_raw, _bootstrap_error(test)
+    return test, train.sum(axis=1), raw.sum(axis=1)
 
 
 def _replace_overshoot(fit: Fit, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -276,14 +276,14 @@ def _replace_overshoot(fit: Fit, part: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def _block_sums(target, estimate, part, block) -> np.ndarray:
-    """(4, blocks, q): rows, sum z, sum z^2 and sum (zhat - z)^2 of the part, per block of frames.
+    """(4, blocks, b): rows, sum z, sum z^2 and sum (zhat - z)^2 of the part, per block of frames.
 
-    Blocks count back from the last frame, where the test parts of all lags end together; the first
-    may be short. z is taken from the part's mean, which keeps its digits.
+    Blocks count back from the last frame of the part, where the test parts of all lags end
+    together; the first may be short, and those before the part are empty. z is taken from the
+    part's mean, which keeps its digits.
     """
-    rows = np.flatnonzero(part.any(axis=1))
-    rows = slice(rows[0], rows[-1] + 1)
-    target, estimate, part = target[rows], estimate[rows], part[rows]
+    end = np.flatnonzero(part.any(axis=1))[-1] + 1
+    target, estimate, part = target[:end], estimate[:end], part[:end]
     z = np.where(part, target - mean_of(target, part), 0.0)
     error = np.where(part, estimate - target, 0.0)
     edges = np.arange(len(part), 0, -block)[::-1] - block
@@ -301,6 +301,7 @@ def _capacity(sums: np.ndarray) -> np.ndarray:
 
 def _bootstrap_error(sums: np.ndarray) -> float:
     """Standard error of the mean of max(c, 0) as the blocks of sums (4, blocks, q) are redrawn."""
+    sums = sums[:, sums[0].any(axis=1)]
     blocks = sums.shape[1]
     if blocks < 2:
         return math.nan

@@ -6,8 +6,8 @@ semantics of scikit-learn's `Ridge`, which is the oracle in the tests.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -19,6 +19,7 @@ from fiberweb.scoring.limits import ALPHA, HORIZON, SPLIT, check_frames
 from fiberweb.scoring.limits import training_end as training_end
 
 SCORINGS = ("clean", "published")
+BLOCK = 1_000_000  # values of targets that are held at once
 
 
 @spelt
@@ -66,7 +67,7 @@ class Options:
 
 @dataclass(frozen=True)
 class Fit:
-    """q targets over T frames, their estimates, and the rows of either part: all (T, q)."""
+    """Targets over T frames, their estimates, and the rows of either part: all (T, b)."""
 
     target: np.ndarray
     estimate: np.ndarray
@@ -111,6 +112,11 @@ def targets(u: np.ndarray, orders: Sequence[int], lags: Sequence[int]) -> np.nda
 def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
     """u (T - skip,) and readouts (T - skip, p) as floats; ValueError says what is wrong."""
     sample_rate = positive("sample_rate", sample_rate, " is not usable; give a rate above 0 Hz")
+    for name, values in {"u": u, "readouts": readouts}.items():
+        if np.ma.is_masked(values):
+            raise ValueError(f"{name} has masked values; fill them, or cut out a stretch without")
+        if np.iscomplexobj(values):
+            raise ValueError(f"{name} is complex; give its real and imaginary part as two signals")
     u, readouts = np.asarray(u, dtype=float), np.asarray(readouts, dtype=float)
     if u.ndim != 1 or readouts.ndim != 2 or len(u) != len(readouts) or not readouts.shape[1]:
         raise ValueError(
@@ -130,22 +136,28 @@ def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
     return u, readouts
 
 
-def fit_targets(u, readouts, orders, lags, horizon, options) -> tuple[Fit, Fit]:
-    """Fits of P_k for the orders and of recall for the lags; lags and horizon in frames."""
+def fit_targets(u, readouts, orders, lags, horizon, options) -> tuple[Iterator[Fit], Iterator[Fit]]:
+    """Fits of P_k for the orders and of recall for the lags in blocks; lags, horizon in frames."""
     u, n = scale_input(u), len(orders)
-    target = targets(u, orders, lags)
-    if options.scoring == "clean":
-        starts = np.full(target.shape[1], horizon)
-        fitted = slice(horizon, training_end(horizon, len(u), options.split))
-    else:
-        starts = np.array([0] * n + list(lags))
-        fitted = slice(None)
-    x = standardise(readouts, fitted)
+    clean = options.scoring == "clean"
+    fitted = slice(horizon, training_end(horizon, len(u), options.split)) if clean else slice(None)
+    x = narrowed(standardise(readouts, fitted))
+    starts = np.array([0] * n + list(lags))
+    if clean:
+        starts[:] = horizon
+
+    def wanted(first, last):
+        recalled = lags[max(first - n, 0) : max(last - n, 0)]
+        return targets(u, orders[first:last], recalled)
+
     if options.shuffle:
-        nonlinear = _fit_shuffled(x, target[:, :n], options)
-        return nonlinear, _fit(x, target[:, n:], starts[n:], options)
-    fit = _fit(x, target, starts, options)
-    return fit[:, :n], fit[:, n:]
+        order = _shuffled(len(u), options)
+        polynomials = Fits(x[order], lambda *block: wanted(*block)[order], starts[:n], options)
+        recalls = Fits(x, lambda first, last: wanted(first + n, last + n), starts[n:], options)
+        back = np.argsort(order)
+        return (fit[back] for fit in polynomials.blocks()), recalls.blocks()
+    fits = Fits(x, wanted, starts, options)
+    return fits.blocks(0, n), fits.blocks(n)
 
 
 def standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
@@ -159,27 +171,57 @@ def standardise(readouts: np.ndarray, fitted: slice) -> np.ndarray:
     return x
 
 
-def _fit(x, target, starts, options) -> Fit:
-    """Ridge estimates of target (T, q) from x (T, p); target j is split from row starts[j] on."""
-    row = np.arange(len(x))[:, None]
-    ends = np.array([training_end(start, len(x), options.split) for start in starts])
-    train, test = (row >= starts) & (row < ends), row >= ends
-    mean = mean_of(target, train)
-    cross = x.T @ np.where(train, target - mean, 0.0)
-    weights, offset = _solve_windows(x, cross, starts, ends, options.alpha)
-    estimate = x @ weights
-    estimate += mean - offset
-    return Fit(target, estimate, train, test)
+def narrowed(x: np.ndarray) -> np.ndarray:
+    """Readouts (T, p) as no more than T columns, with the same ridge estimates: these do not change
+    when readouts are rotated, and T rows span no more than T directions."""
+    return x if x.shape[1] <= len(x) else np.ascontiguousarray(np.linalg.qr(x.T, mode="r").T)
 
 
-def _fit_shuffled(x, target, options) -> Fit:
-    """As `_fit`, on the rows that sklearn's train_test_split would choose for the
-    authors' random_state."""
-    order = np.random.RandomState(SHUFFLE_SEED).permutation(len(x))
-    tested = len(x) - training_end(0, len(x), options.split)
-    order = np.roll(order, -tested)  # sklearn tests on the first of the permutation, `_fit` last
-    fit = _fit(x[order], target[order], np.zeros(target.shape[1], dtype=int), options)
-    return fit[np.argsort(order)]
+class Fits:
+    """Ridge estimates of q targets from x (T, p), made a few targets at a time: of a long recording
+    at a high rate, the targets of all lags are many times what was recorded."""
+
+    def __init__(self, x, targets: Callable[[int, int], np.ndarray], starts, options):
+        """targets: from one to before another, (T, b); starts: first row of each one's split, (q,)."""
+        self._x, self._targets, self._starts = x, targets, starts
+        self._ends = np.array([training_end(start, len(x), options.split) for start in starts])
+        cross, means = np.empty((x.shape[1], len(starts))), np.empty(len(starts))
+        for first, last in self._bounds(0, len(starts)):
+            target, (train, _) = targets(first, last), self._parts(first, last)
+            means[first:last] = mean = mean_of(target, train)
+            cross[:, first:last] = x.T @ np.where(train, target - mean, 0.0)
+        self._weights, offset = _solve_windows(x, cross, starts, self._ends, options.alpha)
+        self._intercepts = means - offset
+
+    def blocks(self, first: int = 0, last: int | None = None) -> Iterator[Fit]:
+        """The fits of the targets from one to before another, all by default."""
+        for block in self._bounds(first, len(self._starts) if last is None else last):
+            estimate = self._x @ self._weights[:, slice(*block)]
+            estimate += self._intercepts[slice(*block)]
+            yield Fit(self._targets(*block), estimate, *self._parts(*block))
+
+    def _bounds(self, first: int, last: int) -> list[tuple[int, int]]:
+        width = max(1, BLOCK // len(self._x))
+        return [(at, min(at + width, last)) for at in range(first, last, width)]
+
+    def _parts(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of the training and of the test part, (T, b) each."""
+        row = np.arange(len(self._x))[:, None]
+        starts, ends = self._starts[first:last], self._ends[first:last]
+        return (row >= starts) & (row < ends), row >= ends
+
+
+def joined(fits: Iterable[Fit]) -> Fit:
+    """Blocks of targets as one."""
+    return Fit(*(np.hstack(each) for each in zip(*map(astuple, fits), strict=True)))
+
+
+def _shuffled(frames: int, options) -> np.ndarray:
+    """The rows in the order in which sklearn's train_test_split would choose them for the authors'
+    random_state."""
+    order = np.random.RandomState(SHUFFLE_SEED).permutation(frames)
+    tested = frames - training_end(0, frames, options.split)
+    return np.roll(order, -tested)  # sklearn tests on the first of the permutation, `Fits` last
 
 
 def _solve_windows(x, cross, starts, ends, alpha) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from fiberweb.model.scene import Scene
-from fiberweb.scoring import arguments, capacity
+from fiberweb.scoring import arguments, capacity, recording
 from fiberweb.scoring.limits import ALPHA
 from fiberweb.simulation import dataset
 from fiberweb.tables import ordered
@@ -96,7 +96,7 @@ def baselines(
     """Input-only baselines: what readouts made of the input alone score.
 
     Args:
-        response: of it only the input and its sample rate are used.
+        response: of it only the input and its time are used.
         alpha, scoring, **options: as for `capacity.score_arrays`; scoring None is the one of
             the response's setup.
 
@@ -104,9 +104,9 @@ def baselines(
         A frame of `BASELINE_COLUMNS`, readout being "u", "derivatives" or "powers".
     """
     arguments.check_input(response, scoring, options)
-    scoring = scoring or capacity.own_scoring(response)
-    sample_rate = float(response.attrs["sample_rate"])
-    u = response["input"].values  # whole even in an unstable run
+    scoring = scoring or recording.own_scoring(response)
+    sample_rate = recording.sample_rate(response)
+    u = recording.scored_input(response, scoring)  # whole even in an unstable run
     records = []
     for name, readouts in capacity.trivial_readouts(u, sample_rate).items():
         scored = capacity.score_arrays(

@@ -18,7 +18,8 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     """What a run gave, with all that is needed to repeat it.
 
     Returns:
-        `input(time)` dimensionless; `displacement(time, readout, axis)` in metres;
+        `input(time)` dimensionless, and `scored_input(time)` beside it in the published setup
+        (`fiberweb.model.drive.scored`); `displacement(time, readout, axis)` in metres;
         `energy(time, form)` in joules, with work and dissipation since the start; coordinates
         time (s), axis (x, y), and for each readout kind, rest_x, rest_y (m), fibre and section;
         if the scene asks for centre lines, `centre_line(time, node, axis)` in metres with
@@ -71,6 +72,9 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
             "versions": ", ".join(f"{name} {version(name)}" for name in packages),
         },
     )
+    if scene.setup == "published":
+        scored = drive.scored(scene)(scene.times)
+        data["scored_input"] = "time", scored, {"long_name": "input of the scoring", "units": "1"}
     if scene.centre_lines:
         data = data.merge(_centre_lines(mesh, moved[:, len(readouts) :]))
     if unstable:

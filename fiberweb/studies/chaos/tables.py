@@ -20,7 +20,7 @@ import pandas as pd
 import xarray as xr
 
 from fiberweb.model.scene import Scene
-from fiberweb.scoring import capacity
+from fiberweb.scoring import recording
 from fiberweb.simulation import dataset
 
 STEP = 0.5  # s: longer than the input is correlated, so that steps count as independent
@@ -180,6 +180,6 @@ def _measured(pair: Pair) -> tuple:
 
 def _last_half(pair: Pair) -> list[np.ndarray]:
     """Signals (time, p) of the last half of both runs, each without its mean over that time."""
-    signals = [capacity.signals(run)[1] for run in pair]
+    signals = [recording.signals(run) for run in pair]
     halves = [values[len(values) // 2 :] for values in signals]
     return [values - values.mean(axis=0) for values in halves]

@@ -10,7 +10,7 @@ import pandas as pd
 
 from fiberweb.model.readouts import of_signals
 from fiberweb.model.scene import Scene
-from fiberweb.scoring import capacity, groups, selection, tables
+from fiberweb.scoring import capacity, groups, recording, selection, tables
 from fiberweb.simulation import dataset
 
 CHRONOLOGICAL, SHUFFLED = "chronological", "shuffled"
@@ -84,10 +84,10 @@ def _groups(response, alpha: float) -> list[dict]:
     """The rows of one run."""
     network = Scene.from_json(response.attrs["scene"]).network
     stable = response.attrs["status"] == "ok"
-    u, moved = capacity.signals(response)
-    rate = float(response.attrs["sample_rate"])
+    scoring, moved = recording.own_scoring(response), recording.signals(response)
+    u, rate = recording.scored_input(response, scoring), recording.sample_rate(response)
     splits = {
-        CHRONOLOGICAL: {"scoring": capacity.own_scoring(response)},
+        CHRONOLOGICAL: {"scoring": scoring},
         SHUFFLED: {"scoring": "published", "shuffle": True},
     }
     rows = []
@@ -108,9 +108,8 @@ def _groups(response, alpha: float) -> list[dict]:
 
 def _chosen(response, target: str, alpha: float, share: float) -> list[dict]:
     """The rows of one target."""
-    u, moved = capacity.signals(response)
-    rate = float(response.attrs["sample_rate"])
-    order = selection.forward(u, moved, rate, target, alpha)
+    u, moved = response["input"].values, recording.signals(response)
+    order = selection.forward(u, moved, recording.sample_rate(response), target, alpha)
     c = getattr(order, target)
     readout, axis = of_signals(order.signal, response.sizes["readout"])
     rows = pd.DataFrame({name: getattr(order, name) for name in TOTALS})

@@ -22,8 +22,8 @@ from sklearn.model_selection import train_test_split
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 
-from fiberweb.scoring import esn, tables
-from fiberweb.scoring.capacity import signals, trivial_readouts
+from fiberweb.scoring import esn, recording, tables
+from fiberweb.scoring.capacity import trivial_readouts
 from fiberweb.scoring.regression import scale_input
 from fiberweb.simulation import dataset
 
@@ -107,7 +107,7 @@ def estimates(response: xr.Dataset, orders: Sequence[int], rate: float, alpha: f
     Raises:
         ValueError: a rate that does not divide the recording's, or too few samples.
     """
-    step = _frames_a_sample(float(response.attrs["sample_rate"]), rate)
+    step = _frames_a_sample(recording.sample_rate(response), rate)
     readouts = _readouts(response, step)
     scaled = scale_input(response["input"].values[::step])
     train, test = split(len(scaled))
@@ -190,10 +190,10 @@ def _frames_a_sample(sample_rate: float, rate: float) -> int:
 
 def _readouts(response: xr.Dataset, step: int) -> Mapping[str, np.ndarray]:
     """(samples, signals) of each kind of readout, every step-th frame."""
-    u, moved = signals(response)
+    u, moved = response["input"].values, recording.signals(response)
     sampled = scale_input(u[::step])
     # Derivatives are taken at the recording's rate, where its spline is the drive's own.
-    trivial = trivial_readouts(u, float(response.attrs["sample_rate"]))
+    trivial = trivial_readouts(u, recording.sample_rate(response))
     return {
         "network": moved[::step],
         "echo_state": esn.states(sampled, moved.shape[1]),
