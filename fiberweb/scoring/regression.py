@@ -182,7 +182,7 @@ class Fits:
     at a high rate, the targets of all lags are many times what was recorded."""
 
     def __init__(self, x, targets: Callable[[int, int], np.ndarray], starts, options):
-        """targets: from one to before another, (T, b); starts: first row of each one's split, (q,)."""
+        """targets: from one to before another, (T, b); starts: first row of each split, (q,)."""
         self._x, self._targets, self._starts = x, targets, starts
         self._ends = np.array([training_end(start, len(x), options.split) for start in starts])
         cross, means = np.empty((x.shape[1], len(starts))), np.empty(len(starts))
