@@ -49,6 +49,7 @@ def describe(plan: Plan) -> str:
         f"error: {_error(plan)}",
         f"left out: {_left_out(plan)}",
         f"step: {1e6 * step:.3g} us, {_against(step, plan.limit, scene)}",
+        f"damping: {_damping(scene, step)}",
         f"cost: {steps:.3g} steps x {elements} elements, about {_duration(seconds)}",
     ]
     return "\n".join(lines + [f"beware: {text}" for text in _warnings(scene)])
@@ -104,6 +105,17 @@ def _against(step: float, limit: float, scene: Scene) -> str:
     return (
         f"{step / limit:.2f} of {stated} (at most {safety(scene):g} by itself; rounded down to "
         "divide the sample period)"
+    )
+
+
+def _damping(scene: Scene, step: float) -> str:
+    if scene.setup == "published":
+        short = 100 * 0.5 * scene.damping * step
+        return (
+            f"{scene.damping:g} /s after the kick, as PyElastica's: forces act {short:.2g} % short"
+        )
+    return (
+        f"{scene.damping:g} /s, exact at any step ({scene.damping * step:.2g} decay times a step)"
     )
 
 
