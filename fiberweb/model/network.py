@@ -14,6 +14,8 @@ import numpy as np
 from fiberweb.arguments import plain, positive, spelt, whole
 
 METRES = " must be a positive length in metres"
+# Beyond these a network alone takes minutes to lay out, and a second of its readouts gigabytes.
+MOST_FIBRES, MOST_VERTICES = 500, 60
 COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
 
 
@@ -76,14 +78,15 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
     length is (N + 1) spacings.
 
     Args:
-        n: fibres in each direction, at least 2.
+        n: fibres in each direction, 2 to `MOST_FIBRES`.
         length: fibre length (m); give this or `spacing`.
         spacing: distance between neighbouring parallel fibres (m).
 
     Raises:
-        ValueError: n below 2, neither or both of length and spacing, or one not positive.
+        ValueError: n out of range, neither or both of length and spacing, or one not positive.
     """
     n = whole("n", n, 2, ": a crosshatch has at least 2 fibres in each direction, a whole number")
+    _refuse_endless(n, MOST_FIBRES, "fibres in each direction")
     if (length is None) == (spacing is None):
         raise ValueError(
             f"crosshatch takes either length or spacing, not length = {length} and "
@@ -116,15 +119,16 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     the s of Eq. 3.
 
     Args:
-        n: vertices, an even number of at least 6.
+        n: vertices, an even number from 6 to `MOST_VERTICES`.
         diameter: of the circumscribed circle (m).
         diagonals: "all" joins every pair of non-neighbours (the paper's text), "skip-one"
             only the diameters and the vertices two apart (the authors' code).
 
     Raises:
-        ValueError: n odd or below 6, diameter not positive, or another word in diagonals.
+        ValueError: n odd or out of range, diameter not positive, or another word in diagonals.
     """
     n = whole("n", n, 6, ": a polygon has an even number of at least 6 vertices")
+    _refuse_endless(n, MOST_VERTICES, "vertices")
     if n % 2:
         raise ValueError(f"n = {n}: a polygon has an even number of vertices, for its diameters")
     diameter, diagonals = positive("diameter", diameter, METRES), plain(diagonals)
@@ -149,6 +153,11 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
         "polygon", n, diameter, spacing, diagonals, fibres, stations, crossings,
         0, centre + spacing / 2,
     )  # fmt: skip
+
+
+def _refuse_endless(n: int, most: int, of: str) -> None:
+    if n > most:
+        raise ValueError(f"n = {n}: more than {most} {of} are beyond any machine; take fewer")
 
 
 def from_spec(spec: dict) -> Network:

@@ -9,6 +9,7 @@ from fiberweb import Scene, crosshatch
 from fiberweb.claims import judge as claims
 from fiberweb.config import Config
 from fiberweb.scoring import capacity, groups, tables
+from fiberweb.scoring.recording import signals
 from fiberweb.simulation import dataset
 from fiberweb.studies.features import figure as plotting
 from fiberweb.studies.features import tables as features
@@ -40,7 +41,8 @@ def response(force, status="ok", setup="described"):
         moved[50:] = np.nan
     return xr.Dataset(
         {"input": ("time", u), "displacement": (("time", "readout", "axis"), moved)},
-        {"axis": ["x", "y"]} | {c: ("readout", points[c]) for c in ("kind", "fibre", "section")},
+        {"axis": ["x", "y"], "time": np.arange(len(u)) / RATE}
+        | {c: ("readout", points[c]) for c in ("kind", "fibre", "section")},
         {
             "status": status, "setup": setup, "sample_rate": RATE, "scene": scene.to_json(),
             "run": f"run-{force}", "engine": "none", "elements_per_section": 1, "time_step": 1e-3,
@@ -81,7 +83,7 @@ def test_one_row_for_each_run_group_and_split(study):
 
 def test_a_group_is_scored_on_its_own_signals(study):
     frames, runs = study
-    u, moved = capacity.signals(runs[1])
+    u, moved = runs[1]["input"].values, signals(runs[1])
     network = crosshatch(4, length=0.5)
     some = moved[:, groups.mask("near_actuation", network, runs[1])]
     table = frames["features"]
@@ -116,7 +118,7 @@ def test_greedy_rows_name_their_signals_and_end_with_all(study):
         assert rows["kept"].iloc[-1] == 1.0
         needed = rows["needed"].iloc[0]
         assert (rows["kept"].iloc[needed - 1 :] >= 0.95).all()
-        whole = capacity.score_arrays(*capacity.signals(runs[1]), RATE, alpha=0.1)
+        whole = capacity.score_arrays(runs[1]["input"].values, signals(runs[1]), RATE, alpha=0.1)
         assert rows[target].iloc[-1] == pytest.approx(getattr(whole, target), abs=1e-6)
     assert needed < 20  # five directions and little noise
 

@@ -9,6 +9,7 @@ from matplotlib.collections import PolyCollection
 from fiberweb import Scene, crosshatch
 from fiberweb.claims import judge as claims
 from fiberweb.scoring import capacity, tables
+from fiberweb.scoring.recording import signals
 from fiberweb.simulation import dataset
 from fiberweb.studies.narma import figure
 from fiberweb.studies.narma import task as narma
@@ -146,7 +147,7 @@ def test_estimates_are_ridge_on_standardised_readouts():
     """The normal equations, written out; next is the same series one sample on."""
     response = recording(3)
     estimates = narma.estimates(response, (2, 10), 10.0, 1.0)
-    u, x = capacity.signals(response)
+    u, x = response["input"].values, signals(response)
     u, x = u[::5], x[::5].astype(float)
     train, test = np.arange(16, 64), np.arange(64, 80)  # 80 samples, a fifth of them dropped
     y = narma.series(0.2 * (u - u.min()) / (u.max() - u.min()), 10)

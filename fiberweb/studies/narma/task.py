@@ -26,14 +26,13 @@ from fiberweb.scoring import esn, recording, tables
 from fiberweb.scoring.capacity import trivial_readouts
 from fiberweb.scoring.regression import scale_input
 from fiberweb.simulation import dataset
+from fiberweb.studies.narma import ORDERS, check_samples, frames_a_sample
 
-ORDERS = (2, 5, 10)
 TIMINGS = {"same": 0, "next": 1}  # samples from the readouts to the y that they estimate
 AMPLITUDE = 0.2  # largest u of the task
 DROPPED = 200  # first samples left out of training and test ...
 DROPPED_PART = 0.2  # ... or this part of a recording too short for that
 TESTED = 0.25  # last part of the rest
-LEAST_SAMPLES = 2 * max(ORDERS)
 
 
 def series(u: np.ndarray, order: int) -> np.ndarray:
@@ -74,13 +73,9 @@ def split(samples: int) -> tuple[np.ndarray, np.ndarray]:
     first three quarters are trained on.
 
     Raises:
-        ValueError: fewer than `LEAST_SAMPLES`.
+        ValueError: too few, see `check_samples`.
     """
-    if samples < LEAST_SAMPLES:
-        raise ValueError(
-            f"the recording has {samples} samples at the rate of the NARMA task; record at least "
-            f"{LEAST_SAMPLES}, two lengths of NARMA-{max(ORDERS)}"
-        )
+    check_samples(samples)
     kept = np.arange(min(DROPPED, int(DROPPED_PART * samples)), samples)
     return tuple(train_test_split(kept, test_size=TESTED, shuffle=False))
 
@@ -107,7 +102,7 @@ def estimates(response: xr.Dataset, orders: Sequence[int], rate: float, alpha: f
     Raises:
         ValueError: a rate that does not divide the recording's, or too few samples.
     """
-    step = _frames_a_sample(recording.sample_rate(response), rate)
+    step = frames_a_sample(recording.sample_rate(response), rate)
     readouts = _readouts(response, step)
     scaled = scale_input(response["input"].values[::step])
     train, test = split(len(scaled))
@@ -176,16 +171,6 @@ def table(
     return tables.study(capacity_paths, choices).merge(
         measures(errors), on="run", validate="one_to_many"
     )
-
-
-def _frames_a_sample(sample_rate: float, rate: float) -> int:
-    step = round(sample_rate / rate)
-    if step < 1 or abs(step * rate - sample_rate) > 1e-9 * sample_rate:
-        raise ValueError(
-            f"narma.rate = {rate:g} Hz does not divide the recording's {sample_rate:g} Hz; choose "
-            "one that does"
-        )
-    return step
 
 
 def _readouts(response: xr.Dataset, step: int) -> Mapping[str, np.ndarray]:

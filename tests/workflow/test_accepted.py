@@ -1,0 +1,72 @@
+"""What a dry run accepts, runs through: every run of an accepted config starts."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from pydantic import BaseModel
+
+from fiberweb.config import Config, load
+from fiberweb.runs import check, run_table
+
+SMOKE = [Path(__file__).parents[2] / "config" / name for name in ("config.yaml", "smoke.yaml")]
+BASE = load(*SMOKE).model_dump()
+NUMBERS = {
+    float: st.sampled_from([1e-6, 0.01, 0.3, 0.5, 0.9, 1.0, 1.7, 2.0, 10.0, 30.0, 1e3, 1e6]),
+    int: st.sampled_from([0, 1, 2, 3, 5, 7, 12, 40, 2**32]),
+}
+
+
+def leaves(section: type[BaseModel], value: dict, path=()):
+    """(path, value) of every key that holds a value and no section; those of folders left out."""
+    for name, field in section.model_fields.items():
+        kind = field.annotation
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            yield from leaves(kind, value[name], (*path, name))
+        elif name not in ("results", "published_tables"):
+            yield (*path, name), value[name]
+
+
+def near(value) -> st.SearchStrategy:
+    """Values like one in a config: of its kind, in and out of what can be run."""
+    if isinstance(value, list):
+        return st.lists(near(value[0]), min_size=1, max_size=3)
+    if isinstance(value, bool) or value is None:
+        return st.sampled_from([True, False, None, 0, 1, 2.0, "kirchhoff", "cosserat", "sliding"])
+    if isinstance(value, (int, float)):
+        factors = NUMBERS[float].map(lambda factor: type(value)(factor * value))
+        return st.one_of(NUMBERS[type(value)], factors)
+    return st.sampled_from([None, "draft", "fine", "clamped", "sliding", "pinned"])
+
+
+LEAVES = dict(leaves(Config, BASE))
+
+
+@st.composite
+def changes(draw) -> dict:
+    """Some keys of the config with other values, as a config file would give them."""
+    changed: dict = {}
+    for path in draw(st.lists(st.sampled_from(sorted(LEAVES)), min_size=1, max_size=4)):
+        section = changed
+        for name in path[:-1]:
+            section = section.setdefault(name, {})
+        section[path[-1]] = draw(near(LEAVES[path]))
+    return changed
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[*HealthCheck])
+@given(changed=changes())
+def test_every_run_of_an_accepted_config_starts(changed):
+    """Scenes are resolved to a mesh and a stable step, and not integrated."""
+    try:
+        config = load(*SMOKE, changed)
+        table = run_table(config)
+        check(table.values())
+    except ValueError as error:
+        assert "\n" not in str(error)
+        assume(False)
+    for run in table.values():
+        run.check()
+        assert len(run.scene.times) == run.scene.samples
