@@ -1,5 +1,7 @@
 """The explanation of an accuracy says what is chosen, how wrong it is, and what it leaves out."""
 
+from dataclasses import replace
+
 import pytest
 
 from fiberweb import Scene, crosshatch
@@ -56,10 +58,10 @@ def test_it_knows_the_damping():
     """At 1e5 /s the decay of a mode was x / sinh x of what it should be, x = damping * step / 2."""
     scene = Scene(crosshatch(4, length=0.5), damping=1e5)
     step = 1e-6 * float(lines(scene)["step"].split()[0])
-    decays = lines(scene)["damping"].removeprefix("1e+05 /s, exact at any step (").split()[0]
+    decays = lines(scene)["damping"].removeprefix("100000 /s, exact at any step (").split()[0]
     assert float(decays) == pytest.approx(1e5 * step, rel=0.05)  # two digits are printed
     published = lines(Scene(crosshatch(4, length=0.5), "published", damping=1e4))["damping"]
-    assert published == "1e+04 /s after the kick, as PyElastica's: forces act 2.5 % short"
+    assert published == "10000 /s after the kick, as PyElastica's: forces act 2.5 % short"
 
 
 def test_published_setup():
@@ -89,6 +91,10 @@ def test_a_refusal_is_the_one_of_simulate():
 def test_a_stubby_network_needs_an_engine_named():
     """4.5 diameters: the dial refuses it, in words, and takes the engine that has shear."""
     stubby = Scene(crosshatch(2, spacing=0.009))
-    with pytest.raises(ValueError, match=r"spacing = 0\.009 m: .* take a longer one, or engine"):
+    advice = r"spacing = 0\.009 m: .* take a longer one, or engine = 'cosserat' with a spring at "
+    with pytest.raises(ValueError, match=advice + "crossings, crossing_stiffness = 1e.06 N/m"):
         explain(stubby, "standard")
-    assert "cosserat engine" in lines(stubby, engine="cosserat")["choice"]
+    sprung = replace(stubby, crossing_stiffness=1e6)
+    with pytest.raises(ValueError, match="take a longer one, or engine = 'cosserat'$"):
+        explain(sprung, "standard")
+    assert "cosserat engine" in lines(sprung, engine="cosserat")["choice"]

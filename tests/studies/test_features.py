@@ -60,6 +60,7 @@ def study(tmp_path_factory):
         paths.append((folder / f"{number}c.nc", folder / f"{number}r.nc"))
         dataset.save(capacity.score(run), paths[-1][0])
         dataset.save(run, paths[-1][1])
+    runs = [dataset.load(path) for _, path in paths]
     frames = {
         "features": features.group_table(*zip(*paths), ["grid"] * 3, 0.1, 0.2),
         "features_greedy": features.greedy_table(paths[1][1], 0.1, 0.95),
