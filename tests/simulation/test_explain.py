@@ -92,9 +92,9 @@ def test_a_stubby_network_needs_an_engine_named():
     """4.5 diameters: the dial refuses it, in words, and takes the engine that has shear."""
     stubby = Scene(crosshatch(2, spacing=0.009))
     advice = r"spacing = 0\.009 m: .* take a longer one, or engine = 'cosserat' with a spring at "
-    with pytest.raises(ValueError, match=advice + "crossings, crossing_stiffness = 1e.06 N/m"):
+    with pytest.raises(ValueError, match=advice + r"crossings, crossing_stiffness = 1e.06 N/m"):
         explain(stubby, "standard")
     sprung = replace(stubby, crossing_stiffness=1e6)
-    with pytest.raises(ValueError, match="take a longer one, or engine = 'cosserat'$"):
+    with pytest.raises(ValueError, match="take a longer one, or engine = .cosserat.$"):
         explain(sprung, "standard")
     assert "cosserat engine" in lines(sprung, engine="cosserat")["choice"]
