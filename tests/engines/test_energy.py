@@ -53,12 +53,15 @@ def test_ledger_of_a_driven_run_closes(network, setup, engine, elements, bound):
     assert (np.diff(dissipated) >= 0).all() and dissipated[-1] > 0.01 * work[-1]
 
 
-@pytest.mark.parametrize("damping", [3e4, 1e5])
+@pytest.mark.parametrize("damping", [3e3, 3e4, 1e5])
 def test_the_ledger_closes_under_strong_damping(damping):
-    """What the damper takes is exact in the terminal velocity, several decay times a step."""
-    response = simulate(Scene(SMALL, duration=1.0, damping=damping), elements_per_section=2)
-    assert damping * response.attrs["time_step"] > 2.0
-    assert response.attrs["energy_residual"] < 1e-4
+    """Several decay times a step, of which the ledger takes one power: what that leaves shrinks
+    with the step."""
+    scene = Scene(SMALL, duration=1.0, damping=damping)
+    step = simulate(scene, elements_per_section=2).attrs["time_step"]
+    runs = [simulate(scene, elements_per_section=2, time_step=step / k) for k in (1, 4)]
+    residuals = [run.attrs["energy_residual"] for run in runs]
+    assert residuals[0] < 3e-4 and residuals[1] < 0.5 * residuals[0]
 
 
 @pytest.mark.parametrize("engine", ["kirchhoff", "cosserat"])

@@ -95,6 +95,6 @@ def test_a_stubby_network_needs_an_engine_named():
     with pytest.raises(ValueError, match=advice + r"crossings, crossing_stiffness = 1e.06 N/m"):
         explain(stubby, "standard")
     sprung = replace(stubby, crossing_stiffness=1e6)
-    with pytest.raises(ValueError, match="take a longer one, or engine = .cosserat.$"):
+    with pytest.raises(ValueError, match=r"take a longer one, or engine = .cosserat.$"):
         explain(sprung, "standard")
     assert "cosserat engine" in lines(sprung, engine="cosserat")["choice"]
