@@ -8,13 +8,15 @@ CORES ?= 2
 VENV := .venv
 STAMP := $(VENV)/.installed
 SNAKEMAKE := $(VENV)/bin/snakemake
+VENV_0_3_2 := .venv-0.3.2
+STAMP_0_3_2 := $(VENV_0_3_2)/.installed
 AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 
 # what the workflow starts as `python` is the one in .venv
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all accuracy smoke test docs bench env clean
+.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs bench env clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
@@ -32,6 +34,9 @@ published_all: $(STAMP) ## the same with every run of the authors: for a cluster
 docs: $(STAMP) ## the tables of numbers in docs/, from results/tables
 	$(VENV)/bin/python -m fiberweb.tools.docs
 
+compliant: $(STAMP) ## the studies of the paper, with crossings that give
+	$(SNAKEMAKE) compliant --cores $(CORES)
+
 accuracy: $(STAMP) ## error against cost, the model ladder and the limits of the step
 	$(SNAKEMAKE) accuracy --cores $(CORES)
 
@@ -41,13 +46,26 @@ smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest
 
+test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
+	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
+
 bench: $(STAMP) ## what a run and a job cost on this machine
 	$(VENV)/bin/python -m fiberweb.tools.bench
 
 env: $(STAMP) ## .venv alone, from envs/requirements.lock
 
-clean: ## remove .venv and the caches; results stay
-	rm -rf $(VENV) .pytest_cache .hypothesis .ruff_cache
+clean: ## remove what was installed and the caches; results stay
+	rm -rf $(VENV) $(VENV_0_3_2) .pytest_cache .hypothesis .ruff_cache
+
+# What is called with a folder and a lock file.
+define install
+	@echo "Installing $(2) into $(1): about a minute, 1 GB."
+	@rm -rf $(1)
+	@$(PYTHON) -m venv $(1)
+	@$(1)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes \
+	    --requirement $(2)
+	@touch $(1)/.installed
+endef
 
 # The stamp comes last: an install that failed or was interrupted has none, and
 # the next make starts again from nothing, as it does after the lock changed.
@@ -55,9 +73,11 @@ $(STAMP): envs/requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
 	    echo "fiberweb needs Python 3.11 or newer, but $(PYTHON) is: $$($(PYTHON) --version 2>&1)." \
 	        "Name another one, as in: make test PYTHON=python3.12" >&2; exit 1; }
-	@echo "Installing envs/requirements.lock into $(VENV): about a minute, 1 GB."
-	@rm -rf $(VENV)
-	@$(PYTHON) -m venv $(VENV)
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check \
-	    --require-hashes --requirement envs/requirements.lock
-	@touch $@
+	$(call install,$(VENV),$<)
+
+# The NumPy and Numba that PyElastica 0.3.2 needs end with Python 3.11.
+$(STAMP_0_3_2): envs/pyelastica-0.3.2.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null || { \
+	    echo "PyElastica 0.3.2 needs Python 3.11, but $(PYTHON) is: $$($(PYTHON) --version 2>&1)." \
+	        "Name that one, as in: make test_authors PYTHON=python3.11" >&2; exit 1; }
+	$(call install,$(VENV_0_3_2),$<)

@@ -1,4 +1,4 @@
-"""These tests need PyElastica 0.3.2, which the authors ran: `make test-authors` installs it into an
+"""These tests need PyElastica 0.3.2, which the authors ran: `make test_authors` installs it into an
 environment of its own. Elsewhere nothing here is collected."""
 
 from importlib.metadata import version

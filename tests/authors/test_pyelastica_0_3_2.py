@@ -92,11 +92,12 @@ def test_positions(compared):
 
 
 def test_lengths_of_directors_drift_alike(compared):
-    """What the band is made of: quantiles of |d|^2 - 1 within a factor of two."""
-    _, found = compared
+    """What the band is made of: quantiles of |d|^2 - 1 within a factor of two, over the elements
+    that drifted at all (ours have padding between them, which does not). Without the band our
+    directors are made anew of angles at every sample."""
+    banded, found = compared
+    drifted = [np.array(found[whose]) for whose in ("grown_theirs", "grown_ours")]
     for share in (0.5, 0.75, 0.9):
-        theirs = np.quantile(found["grown_theirs"], share)
-        moving = [value for value in found["grown_ours"]]
-        ours = np.quantile(moving, share)
+        theirs, ours = (np.quantile(values[values > 0.0], share) for values in drifted)
         print(f"quantile {share}: {theirs:.2e} theirs, {ours:.2e} ours")
-        assert 0.5 < ours / theirs < 2.0
+        assert 0.5 < ours / theirs < 2.0 if banded else ours < 0.5 * theirs
