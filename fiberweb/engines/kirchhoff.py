@@ -153,6 +153,7 @@ def advance(
     )
     relative = crossings.no_motion(pairs.a.shape[0])
     before, kicked = crossings.no_motion(groups.members.shape[0]), np.zeros(groups.members.shape[0])
+    mean_x, mean_y = vx.copy(), vy.copy()
     every = energy.interval_steps(step)
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
@@ -179,6 +180,9 @@ def advance(
             passes.moment_pass(*moment)
             passes.force_pass(*force)
             crossings.gather_groups(groups, before, x, y, vx, vy)
+            due = energy.steps_due(k - start, every, per_sample)
+            if due:
+                mean_x[:], mean_y[:] = vx, vy
             passes.kick_pass(*kick_x, rods.decay, step)
             passes.kick_pass(*kick_y, rods.decay, step)
             crossings.pair_pass(pairs, relative, x, y, vx, vy, step)
@@ -186,12 +190,11 @@ def advance(
             crossings.group_pass(groups, before.vy, before.y, kicked, y, vy, step)
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
-            due = energy.steps_due(k - start, every, per_sample)
-            if due:
-                lost = ledger.damping * energy.squared_speed(vx, vy, ledger.mass)
-                energy.enter_dissipation(
-                    ledger, due * step, lost + energy.joint_power(ledger, vx, vy)
-                )
+            if due:  # at the mean velocity, of which times the step a force's work is
+                mean_x[:], mean_y[:] = 0.5 * (mean_x + vx), 0.5 * (mean_y + vy)
+                lost = ledger.damping * energy.squared_speed(mean_x, mean_y, ledger.mass)
+                lost += energy.joint_power(ledger, mean_x, mean_y)
+                energy.enter_dissipation(ledger, due * step, lost)
         if grown > ramp:
             pulled = energy.pull_work(x - 0.5 * step * vx, y - 0.5 * step * vy, readouts, forcing)
             energy.enter_ramp(ledger, held - grown, pulled)
