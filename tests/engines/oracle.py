@@ -125,7 +125,7 @@ def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
     spins = [np.zeros(len(a)) for a in angles]
     per_length = scene.density * second_moment(scene.diameter)
     decay, kick = np.exp(-scene.damping * step), step  # PyElastica's: the kick, then the decay
-    if scene.setup == "described":
+    if scene.setup != "published":
         kick = _flow(scene.damping, step)[1] / decay
     inertia = [per_length * mesh.edges(f) for f in range(len(fibres))]
     out = [x - mesh.position]
