@@ -172,10 +172,11 @@ def request(
     chosen = engine or default
     if engine is None and stubby(scene) and not load(chosen).MODELS_SHEAR:
         other = next(name for name in ENGINES if load(name).MODELS_SHEAR)
+        tied = " with a finite crossing_stiffness" if math.isinf(scene.crossing_stiffness) else ""
         raise ValueError(
             f"spacing = {scene.network.spacing:g} m: a section shorter than {MIN_SLENDERNESS:g} "
             f"diameters of {scene.diameter:g} m shears, which the {chosen} engine leaves out; "
-            f"take a longer one, or engine = {other!r}"
+            f"take a longer one, or engine = {other!r}{tied}"
         )
     if scene.setup == "published":
         time_step = STEP if time_step is None else time_step
