@@ -56,6 +56,11 @@ def refuse(mesh: Mesh) -> None:
             f"filter_order = {scene.filter_order}: the kirchhoff engine has no Laplace filter; "
             "use engine = 'cosserat'"
         )
+    if scene.dead_band:
+        raise ValueError(
+            f"dead_band = {scene.dead_band}: the kirchhoff engine has no rotations to have one; "
+            "use engine = 'cosserat', or dead_band = False"
+        )
     if scene.setup == "published":
         raise ValueError(
             "setup = 'published' damps rotations, which the kirchhoff engine does not have; "
@@ -72,7 +77,7 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
             shear on the same mesh.
 
     Raises:
-        ValueError: the scene has a Laplace filter or is the published setup.
+        ValueError: the scene has a Laplace filter or a dead band, or is the published setup.
     """
     refuse(mesh)
     layout = fourth_order_layout(mesh) if order == 4 else lay_out(mesh, GAP)

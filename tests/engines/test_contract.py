@@ -53,6 +53,8 @@ def test_what_an_engine_does_not_model_it_refuses(name):
     assert engines.accepts(name, small(setup="published")) == (name == "cosserat")
     assert engines.accepts(name, small(setup="published", dead_band=False)) == cosserat
     assert engines.accepts(name, small(setup="compliant", filter_order=3)) == cosserat
+    banded = small(setup="compliant", dead_band=True)
+    assert engines.accepts(name, banded) == (name == "cosserat")
     assert engines.accepts(name, small(setup="compliant", crossing_stiffness=np.inf)) != cosserat
     three_elements = Scene(crosshatch(2, spacing=0.1), setup="compliant", filter_order=3)
     filtered = build(three_elements, 1)
