@@ -49,7 +49,7 @@ class Section(BaseModel):
 
 
 class SceneSection(Section):
-    """Physics and recording of every run, in both setups."""
+    """Physics and recording of every run, in every setup."""
 
     tension: NotNegative = scene_key(
         "tension", "constant pull along each fibre at its far end, F_t", "N", SIMULATION

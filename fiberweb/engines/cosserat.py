@@ -38,7 +38,7 @@ def refuse(mesh: Mesh) -> None:
     if np.isinf(mesh.joint_stiffness).any():
         raise ValueError(
             f"crossing_stiffness = {mesh.scene.crossing_stiffness}: the cosserat and elastica "
-            "engines need a finite spring; use engine = 'kirchhoff'"
+            "engines need a finite spring; give one, or use engine = 'kirchhoff'"
         )
     shortest = np.diff(mesh.first).min() - 1
     if mesh.scene.filter_order and shortest <= REACH + 1:

@@ -58,7 +58,8 @@ def joint_operators(
         Q = Phi / phi,   P = E - exp(-h g) Q,   S = -Phi M^-1 K:
 
     exact for forces constant over the step, of which v* = exp(-h g) v + phi M^-1 f has had its
-    share phi (`damped_kick`). Nodes that are one point get the mass-weighted mean of v*.
+    share phi (`damped_kick`). Nodes that are one point get the mass-weighted mean of v*, and S
+    closes within a step what round-off has put between them: it would grow like a random walk.
     """
     pairs, others = [], []
     for nodes, spring, damper in joint_groups(mesh, layout):
@@ -106,7 +107,7 @@ def joint_groups(mesh: Mesh, layout: Layout):
 def _pair_operators(mass, k, nu, step, rate) -> tuple[float, float, float]:
     """P, Q and S of two nodes, as factors of their relative motion."""
     if np.isinf(k):
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, -1.0 / step
     over_mass = (1.0 / mass).sum()
     whole = rate + nu * over_mass
     kick = damped_kick(whole, step)
@@ -119,7 +120,7 @@ def _group_operators(mass, spring, damper, step, rate) -> np.ndarray:
     count = len(mass)
     if not np.isfinite(spring).all():
         mean = np.tile(mass / mass.sum(), (count, 1))
-        return np.array([np.zeros((count, count)), mean, np.zeros((count, count))])
+        return np.array([np.zeros((count, count)), mean, (mean - np.eye(count)) / step])
     damping = rate * np.eye(count) + damper / mass[:, None]
     # Phi from one exponential of an augmented matrix: no division by zero rates
     augmented = np.block([[-damping, np.eye(count)], [np.zeros((count, 2 * count))]])
@@ -178,11 +179,15 @@ def pair_pass(pairs, relative, x, y, vx, vy, step):
 
 @kernel
 def gather_groups(groups, before, x, y, vx, vy):
-    """Velocity and position of each member of a group."""
-    for i in range(groups.members.shape[0]):
-        n = groups.members[i]
-        before.vx[i], before.x[i] = vx[n], x[n]
-        before.vy[i], before.y[i] = vy[n], y[n]
+    """Velocity of each member of a group, and position from the first one: S has no use for where
+    they all are, and so no round-off of it."""
+    starts, members = groups.starts, groups.members
+    for g in range(starts.shape[0] - 1):
+        first = members[starts[g]]
+        for i in range(starts[g], starts[g + 1]):
+            n = members[i]
+            before.vx[i], before.x[i] = vx[n], x[n] - x[first]
+            before.vy[i], before.y[i] = vy[n], y[n] - y[first]
 
 
 @kernel

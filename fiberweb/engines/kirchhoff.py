@@ -56,6 +56,11 @@ def refuse(mesh: Mesh) -> None:
             f"filter_order = {scene.filter_order}: the kirchhoff engine has no Laplace filter; "
             "use engine = 'cosserat'"
         )
+    if scene.dead_band:
+        raise ValueError(
+            f"dead_band = {scene.dead_band}: the kirchhoff engine has no rotations to have one; "
+            "use engine = 'cosserat', or dead_band = False"
+        )
     if scene.setup == "published":
         raise ValueError(
             "setup = 'published' damps rotations, which the kirchhoff engine does not have; "
@@ -72,7 +77,7 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
             shear on the same mesh.
 
     Raises:
-        ValueError: the scene has a Laplace filter or is the published setup.
+        ValueError: the scene has a Laplace filter or a dead band, or is the published setup.
     """
     refuse(mesh)
     layout = fourth_order_layout(mesh) if order == 4 else lay_out(mesh, GAP)
@@ -153,6 +158,7 @@ def advance(
     )
     relative = crossings.no_motion(pairs.a.shape[0])
     before, kicked = crossings.no_motion(groups.members.shape[0]), np.zeros(groups.members.shape[0])
+    mean_x, mean_y = vx.copy(), vy.copy()
     every = energy.interval_steps(step)
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
@@ -179,6 +185,9 @@ def advance(
             passes.moment_pass(*moment)
             passes.force_pass(*force)
             crossings.gather_groups(groups, before, x, y, vx, vy)
+            due = energy.steps_due(k - start, every, per_sample)
+            if due:
+                mean_x[:], mean_y[:] = vx, vy
             passes.kick_pass(*kick_x, rods.decay, step)
             passes.kick_pass(*kick_y, rods.decay, step)
             crossings.pair_pass(pairs, relative, x, y, vx, vy, step)
@@ -186,12 +195,11 @@ def advance(
             crossings.group_pass(groups, before.vy, before.y, kicked, y, vy, step)
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
-            due = energy.steps_due(k - start, every, per_sample)
-            if due:
-                lost = ledger.damping * energy.squared_speed(vx, vy, ledger.mass)
-                energy.enter_dissipation(
-                    ledger, due * step, lost + energy.joint_power(ledger, vx, vy)
-                )
+            if due:  # at the mean velocity, of which times the step a force's work is
+                mean_x[:], mean_y[:] = 0.5 * (mean_x + vx), 0.5 * (mean_y + vy)
+                lost = ledger.damping * energy.squared_speed(mean_x, mean_y, ledger.mass)
+                lost += energy.joint_power(ledger, mean_x, mean_y)
+                energy.enter_dissipation(ledger, due * step, lost)
         if grown > ramp:
             pulled = energy.pull_work(x - 0.5 * step * vx, y - 0.5 * step * vy, readouts, forcing)
             energy.enter_ramp(ledger, held - grown, pulled)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fiberweb.engines.energy import enter_sample, joint_energy, pull_work, squared_speed
+from fiberweb.engines.energy import enter_lag, enter_sample, joint_energy, pull_work, squared_speed
 from fiberweb.engines.jit import kernel
 
 
@@ -186,4 +186,5 @@ def record_energy(row, state, scratch, rods, forcing, readouts, ledger, stepping
     elastic = strain_energy(x, y, rods, scratch, stepping.stride) + joint_energy(ledger, x, y)
     pulled = pull_work(x, y, readouts, forcing)
     enter_sample(row, ledger, 0.5 * squared_speed(vx, vy, ledger.mass), elastic, ramp, pulled)
+    enter_lag(row, ledger, stepping.step)
     return pulled

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fiberweb.arguments import positive, shown, spelt, true_or_false, whole
 from fiberweb.engines import ENGINES, load
 from fiberweb.errors import unknown_key
-from fiberweb.model.authors import PHYSICS, STEP
+from fiberweb.model.authors import STEP
 from fiberweb.model.scene import Scene
 from fiberweb.simulation import memory
 
@@ -172,10 +172,11 @@ def request(
     chosen = engine or default
     if engine is None and stubby(scene) and not load(chosen).MODELS_SHEAR:
         other = next(name for name in ENGINES if load(name).MODELS_SHEAR)
+        tied = " with a finite crossing_stiffness" if math.isinf(scene.crossing_stiffness) else ""
         raise ValueError(
             f"spacing = {scene.network.spacing:g} m: a section shorter than {MIN_SLENDERNESS:g} "
             f"diameters of {scene.diameter:g} m shears, which the {chosen} engine leaves out; "
-            f"take a longer one, or engine = {other!r}{_spring(scene)}"
+            f"take a longer one, or engine = {other!r}{tied}"
         )
     if scene.setup == "published":
         time_step = STEP if time_step is None else time_step
@@ -184,13 +185,6 @@ def request(
     memory.check(scene, elements_per_section)
     forced = true_or_false("force_time_step", force_time_step)
     return Request(chosen, elements_per_section, time_step, forced)
-
-
-def _spring(scene: Scene) -> str:
-    if math.isfinite(scene.crossing_stiffness):
-        return ""
-    stiff = PHYSICS[scene.network.topology]["crossing_stiffness"]
-    return f" with a spring at crossings, crossing_stiffness = {stiff:g} N/m being very stiff"
 
 
 def stubby(scene: Scene) -> bool:

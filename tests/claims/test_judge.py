@@ -8,10 +8,11 @@ from tests.claims.agreeing import curve_table, topology_table
 
 VERDICTS = {"holds", "differs", "calibrated", "not applicable", "not computed"}
 MODULES = studies.claims()
+SETUPS = ("described", "published", "compliant")
 
 
 def test_every_claim_has_one_row_and_a_verdict_word():
-    for setup in ("described", "published"):
+    for setup in SETUPS:
         given = {"topology": topology_table(setup), "topology_curves": curve_table(setup)}
         for tables in ({}, given):
             result = claims.evaluate(tables, setup, MODULES)
@@ -43,20 +44,19 @@ def test_a_setup_without_runs_is_not_computed():
 def test_setups_stand_side_by_side():
     """In columns named after them, as they were judged."""
     by_setup = {}
-    for setup in ("described", "published"):
+    for setup in SETUPS:
         tables = {"topology": topology_table(setup), "topology_curves": curve_table(setup)}
         by_setup[setup] = claims.evaluate(tables, setup, MODULES)
     joined = claims.join(by_setup)
     shared = list(claims.COLUMNS[:-2])
-    assert list(joined.columns) == [
-        *shared, "described", "described_verdict", "published", "published_verdict"
-    ]  # fmt: skip
+    own = [column for setup in SETUPS for column in (setup, f"{setup}_verdict")]
+    assert list(joined.columns) == [*shared, *own]
     for setup, frame in by_setup.items():
         pd.testing.assert_frame_equal(joined[shared], frame[shared])
         assert list(joined[setup]) == list(frame["value"])
         assert list(joined[f"{setup}_verdict"]) == list(frame["verdict"])
-    verdicts = joined.set_index("id").loc["T1", ["described_verdict", "published_verdict"]]
-    assert list(verdicts) == ["calibrated", "holds"]
+    verdicts = joined.set_index("id").loc["T1", [f"{setup}_verdict" for setup in SETUPS]]
+    assert list(verdicts) == ["holds", "holds", "calibrated"]
 
 
 def test_every_rule_is_written_down_and_belongs_to_a_claim():

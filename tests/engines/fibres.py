@@ -29,13 +29,13 @@ def fibre(elements: int, length: float, tension: float = 0.0, **scene) -> Mesh:
         elements: of equal length.
         length: m.
         tension: pull along the fibre at its far end (N); negative compresses.
-        scene: fields of `Scene`.
+        scene: fields of `Scene`; the near end is clamped and the far end free by default.
     """
     network = Network(
         "crosshatch", 1, length, length, "", np.array([[[0.0, 0.0], [length, 0.0]]]), ((),),
         np.zeros((0, 2)), 0, length / 2,
     )  # fmt: skip
-    mesh = build(Scene(network, tension=0.0, **scene), elements)
+    mesh = build(Scene(network, tension=0.0, **{"ends": "clamped"} | scene), elements)
     mesh = replace(mesh, load=np.zeros_like(mesh.load), readouts=every_node(mesh))
     return pulled(mesh, tension, 0.0)
 

@@ -48,12 +48,16 @@ def small(**fields):
 @pytest.mark.parametrize("name", ENGINES)
 def test_what_an_engine_does_not_model_it_refuses(name):
     cosserat = name != "kirchhoff"
-    assert engines.accepts(name, small())
+    assert engines.accepts(name, small()) != cosserat  # the described setup joins fibres
+    assert engines.accepts(name, small(setup="compliant"))
     assert engines.accepts(name, small(setup="published")) == (name == "cosserat")
     assert engines.accepts(name, small(setup="published", dead_band=False)) == cosserat
-    assert engines.accepts(name, small(filter_order=3)) == cosserat
-    assert engines.accepts(name, small(crossing_stiffness=np.inf)) != cosserat
-    filtered = build(Scene(crosshatch(2, spacing=0.1), filter_order=3), 1)  # three elements
+    assert engines.accepts(name, small(setup="compliant", filter_order=3)) == cosserat
+    banded = small(setup="compliant", dead_band=True)
+    assert engines.accepts(name, banded) == (name == "cosserat")
+    assert engines.accepts(name, small(setup="compliant", crossing_stiffness=np.inf)) != cosserat
+    three_elements = Scene(crosshatch(2, spacing=0.1), setup="compliant", filter_order=3)
+    filtered = build(three_elements, 1)
     assert not engines.accepts(name, filtered)
     with pytest.raises(ValueError, match=r"filter_order = 3: .*; (use|raise) "):
         engines.load(name).refuse(filtered)

@@ -14,7 +14,6 @@ from tests.engines.fibres import every_node, largest_step, sampled
 
 COMPLIANT = dict(setup="compliant")
 # their order of operations; the dead band follows round-off, see tests/engines/test_dead_band.py
-
 AUTHORS = dict(setup="published", dead_band=False)
 
 
@@ -120,7 +119,7 @@ def test_cosserat_against_pyelastica(network, elements_per_section, fields):
 def test_kirchhoff_against_cosserat():
     """Equal chains on an equal mesh before buckling (B = 0.32): shear and rotary inertia change
     4 s of trajectories by less than 2 % rms."""
-    scene = Scene(crosshatch(4, spacing=0.1), duration=4.0)
+    scene = Scene(crosshatch(4, spacing=0.1), duration=4.0, **COMPLIANT)
     assert scene.buckling_number < 0.5
     mesh = build(scene, 8)
     chain = moved(mesh, "kirchhoff", 0.9 * largest_step(mesh, "kirchhoff"), order=2)
@@ -132,7 +131,7 @@ def test_kirchhoff_against_cosserat():
 def test_capacities_of_kirchhoff_and_cosserat():
     """What the engines are for: C_nl and C_m of the whole 100 s within 0.02, the fourth-order
     Kirchhoff rod against the second-order Cosserat rod at 8 elements a section."""
-    scene = Scene(crosshatch(4, spacing=0.1))
+    scene = Scene(crosshatch(4, spacing=0.1), **COMPLIANT)
     ours, theirs = (
         score(simulate(scene, engine=engine, elements_per_section=8))
         for engine in ("kirchhoff", "cosserat")

@@ -21,10 +21,11 @@ from tests.engines.fibres import (
 
 STEPS = 4000  # at 5 % above the limit a mode grows by 1.4 to 1.9 a step
 CROSSINGS = {
-    "described": dict(crossing_stiffness=70.0, crossing_damping=3.0),
+    "compliant": dict(crossing_stiffness=70.0, crossing_damping=3.0),
     "stiff": dict(crossing_stiffness=3e6, crossing_damping=0.0),  # the spring sets the limit
     "sticky": dict(crossing_stiffness=70.0, crossing_damping=20.0),  # the explicit damper does
 }
+UNDAMPED = dict(setup="compliant", damping=0.0)
 
 
 def single_fibre():
@@ -34,7 +35,7 @@ def single_fibre():
 
 def network(crossings):
     """2x2, 10 mm elements, undamped but for the crossings, with a soft step load."""
-    scene = Scene(crosshatch(2, spacing=0.05), damping=0.0, force=1e-3, **CROSSINGS[crossings])
+    scene = Scene(crosshatch(2, spacing=0.05), force=1e-3, **UNDAMPED, **CROSSINGS[crossings])
     mesh = build(scene, 5)
     return replace(mesh, drive=np.array([[0.0, 0.0, 0.0, 1.0]]), readouts=every_node(mesh))
 
@@ -102,7 +103,7 @@ def test_fibres_gone_are_seen_beside_one_that_is_well(engine):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_status_of_a_run_that_blows_up(engine):
     """`simulate` says unstable, with NaN from then on; without force it refuses the step."""
-    scene = Scene(crosshatch(2, spacing=0.05), duration=0.04)
+    scene = Scene(crosshatch(2, spacing=0.05), setup="compliant", duration=0.04)
     limit = largest_step(build(scene, 4), engine)
     kwargs = dict(engine=engine, elements_per_section=4, time_step=1.5 * limit)
     with pytest.raises(ValueError, match=r"time_step = .* is above the stability limit"):

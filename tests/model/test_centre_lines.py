@@ -94,7 +94,7 @@ def test_the_file_holds_them(runs, tmp_path):
 
 def test_a_disturbance_moves_the_driven_point():
     """By as much, in every engine, and no other point."""
-    scene = Scene(NETWORK, duration=0.008, disturbance=1e-4, centre_lines=True)
+    scene = Scene(NETWORK, "compliant", duration=0.008, disturbance=1e-4, centre_lines=True)
     mesh = build(scene, 4)
     expected = np.zeros_like(mesh.position)
     expected[mesh.first[1] + 6, 1] = 1e-4

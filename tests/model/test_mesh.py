@@ -128,6 +128,25 @@ def test_too_few_elements(elements):
         build(Scene(crosshatch(2, spacing=0.1)), elements)
 
 
-def test_sliding_ends_need_fibres_along_the_axes():
-    with pytest.raises(ValueError, match=r"^ends = 'sliding' needs fibres along x or y"):
-        build(Scene(polygon(6), ends="sliding"), 4)
+@pytest.mark.parametrize("diagonals", ["all", "skip-one"])
+def test_far_ends_of_a_polygon_slide_along_their_fibres(diagonals):
+    """Of any direction: those along x or y are held across, the others guided along a line."""
+    mesh = build(Scene(polygon(6, diagonals=diagonals), ends="sliding"), 4)
+    guides = dict(zip(mesh.guided.tolist(), mesh.guides))
+    for fibre, (near, far) in enumerate(mesh.scene.network.fibres):
+        start, end = mesh.first[fibre], mesh.first[fibre + 1] - 1
+        along = (far - near) / np.linalg.norm(far - near)
+        assert mesh.held[start].all() and not mesh.clamped[fibre]
+        if end in guides:
+            assert not mesh.held[end].any()
+            np.testing.assert_allclose(guides[end], along, atol=1e-12)
+        else:
+            np.testing.assert_allclose(abs(along), ~mesh.held[end], atol=1e-12)
+        np.testing.assert_allclose(mesh.pull[end], mesh.scene.tension * along, atol=1e-15)
+    axial = 3  # a diameter along x, and two of the other diagonals along y
+    assert len(guides) == len(mesh.scene.network.fibres) - axial
+
+
+def test_ends_that_do_not_slide_have_no_guides():
+    for ends in ("clamped", "pinned"):
+        assert not len(build(Scene(polygon(6), ends=ends), 4).guided)

@@ -39,11 +39,13 @@ def test_reference_force_and_buckling_number():
         ("published", HATCH),
         ("described", polygon(6)),
         ("published", polygon(6)),
+        ("compliant", HATCH),
+        ("compliant", polygon(6)),
     ],
 )
 def test_setups_fill_what_is_open_and_nothing_else(setup, network):
     scene = Scene(network, setup=setup)
-    for name, value in SETUPS[setup, network.topology].items():
+    for name, value in SETUPS[setup][network.topology].items():
         assert getattr(scene, name) == value
     assert Scene(network, setup=setup, damping=3.0).damping == 3.0
 
@@ -61,7 +63,7 @@ def test_times_start_at_zero_and_are_spaced_by_the_sample_rate():
     st.fixed_dictionaries(
         {},
         optional={
-            "setup": st.sampled_from(["described", "published"]),
+            "setup": st.sampled_from(list(SETUPS)),
             "force": positive,
             "tension": st.just(0.0) | positive,
             "duration": st.floats(1e-2, 1e3),
@@ -71,6 +73,7 @@ def test_times_start_at_zero_and_are_spaced_by_the_sample_rate():
             "crossing_damping": st.just(0.0) | positive,
             "damping": st.just(0.0) | positive,
             "filter_order": st.integers(0, 6),
+            "dead_band": st.booleans(),
             "ends": st.sampled_from(["clamped", "sliding", "pinned"]),
         },
     ),
@@ -103,7 +106,10 @@ def test_json_keeps_every_field(values, network):
         (dict(damping=True), "damping = True: "),
         (dict(filter_order=-1), "filter_order = -1: "),
         (dict(filter_order=21), "filter_order = 21: "),
-        (dict(setup="paper"), "setup = 'paper': input should be 'described' or 'published'"),
+        (
+            dict(setup="paper"),
+            "setup = 'paper': input should be 'described', 'published' or 'compliant'",
+        ),
         (dict(ends="free"), "ends = 'free': "),
     ],
 )

@@ -89,7 +89,10 @@ def test_a_plan_is_simulated_as_its_scene_is():
         (Scene(crosshatch(2, spacing=0.1), tension=400.0), {}, "tension = 400 N: no fibre holds a"),
         (Scene(crosshatch(2, spacing=0.009)), {}, r"spacing = 0\.009 m: a section shorter than 5 "
          "diameters of 0.002 m shears, which the kirchhoff engine leaves out; take a longer one, "
-         "or engine = 'cosserat'"),
+         "or engine = 'cosserat' with a finite crossing_stiffness$"),
+        (Scene(crosshatch(2, spacing=0.009), "compliant"), {}, ".* or engine = 'cosserat'$"),
+        (DESCRIBED, {"engine": "cosserat"}, "crossing_stiffness = inf: the cosserat and elastica "
+         "engines need a finite spring; give one, or use engine = 'kirchhoff'"),
         (Scene(crosshatch(2, spacing=0.1), filter_order=6), {}, "filter_order = 6: the kirchhoff"),
     ],
 )  # fmt: skip
@@ -110,7 +113,7 @@ def test_a_filter_allows_a_step_above_the_limit_without_it():
 
 
 def test_a_stubby_network_may_be_run_by_an_engine_that_is_named():
-    stout = Scene(crosshatch(2, spacing=0.009))
+    stout = Scene(crosshatch(2, spacing=0.009), crossing_stiffness=1e6)
     assert stubby(stout) and not stubby(DESCRIBED)
     for engine in ("kirchhoff", "cosserat"):
         assert plan(stout, engine=engine).engine == engine

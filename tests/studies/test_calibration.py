@@ -22,7 +22,7 @@ EXACT = {"c_p4": 0.999, "c_p7": 0.896, "recall_200ms": 0.997, "recall_400ms": 0.
 
 def capacity_file(folder, name, n, status="ok", **scene):
     """A capacity file in which c is the paper's at four targets, and 0.5 elsewhere."""
-    scene = Scene(crosshatch(n, length=0.5), **scene)
+    scene = Scene(crosshatch(n, length=0.5), "compliant", **scene)
     orders, lags = np.arange(1, 11), np.arange(251) / 250
     nonlinear, memory = np.full(10, 0.5), np.full(251, 0.5)
     nonlinear[[3, 6]] = EXACT["c_p4"], EXACT["c_p7"]
@@ -48,7 +48,7 @@ def grid(**misfits):
     for name, value in misfits.items():
         point = map(float, name[1:].split("_"))
         row = dict(zip(calibration.GRID, point, strict=True)) | {"misfit": value, "n": 8}
-        rows.append(row | {"setup": "described"} | dict.fromkeys(EXACT, 0.9))
+        rows.append(row | {"setup": "compliant"} | dict.fromkeys(EXACT, 0.9))
     return pd.DataFrame(rows)
 
 
@@ -98,7 +98,7 @@ def test_best_is_the_least_misfit_of_the_stable_runs():
     ],
 )
 def test_the_verdict_on_the_defaults(misfits, agrees, words):
-    """The defaults of the described setup are k = 70 N/m, nu = 3 N s/m and gamma = 2.5 /s."""
+    """The defaults of the compliant setup are k = 70 N/m, nu = 3 N s/m and gamma = 2.5 /s."""
     agreed, sentence = calibration.verdict(calibration.check(grid(**misfits)))
     assert agreed == agrees
     assert words in sentence
@@ -126,7 +126,7 @@ def test_the_command_prints_the_verdict(monkeypatch, tmp_path, capsys):
     ("frame", "words"),
     [
         (grid(**{"p70_3_2.5": 3.0}, p40_3_10=2.0), "but the grid's best"),
-        (pd.DataFrame({"setup": ["described"]}), "has the column 'crossing_stiffness_N_m'"),
+        (pd.DataFrame({"setup": ["compliant"]}), "has the column 'crossing_stiffness_N_m'"),
     ],
 )
 def test_the_command_fails_with_one_sentence(monkeypatch, tmp_path, frame, words):
@@ -145,7 +145,7 @@ def points():
     axes = ([40.0, 70.0, 100.0], [2.0, 3.0, 5.0], [1.0, 2.5], [4, 8])
     rows = [
         dict(zip((*calibration.GRID, "n"), point, strict=True))
-        | {"setup": "described", "status": "ok", "c_nl": 0.8, "c_m": 0.4}
+        | {"setup": "compliant", "status": "ok", "c_nl": 0.8, "c_m": 0.4}
         | {"c_nl_se": 0.01, "c_m_se": 0.02}
         | dict.fromkeys(calibration.TARGETS, 0.9)
         | {"misfit": point[0] + point[1] + point[2] if point[3] == 8 else np.nan}
@@ -164,7 +164,7 @@ def points():
 @pytest.fixture(scope="module")
 def drawn(points, tmp_path_factory):
     path = tmp_path_factory.mktemp("figures") / "calibration.png"
-    return plotting.draw(points, "described", path), path
+    return plotting.draw(points, "compliant", path), path
 
 
 def test_the_figure_is_written_and_legible(drawn):
@@ -174,7 +174,7 @@ def test_the_figure_is_written_and_legible(drawn):
 
 def test_baselines_of_the_calibration_may_be_missing(points, unsaved):
     tables = {name: table for name, table in points.items() if name != "ridge_baselines"}
-    figure = plotting.draw(tables, "described", "unsaved")
+    figure = plotting.draw(tables, "compliant", "unsaved")
     assert "readouts made of the input alone" not in said(figure)
 
 
@@ -205,7 +205,7 @@ def test_a_grid_of_one_point_is_drawn(points, tmp_path):
     table = points["calibration"]
     one = table[(table["misfit"] == 75.5)]
     tables = {"calibration": one, "calibration_check": calibration.check(one)}
-    figure = plotting.draw(tables, "described", tmp_path / "one.png")
+    figure = plotting.draw(tables, "compliant", tmp_path / "one.png")
     assert marked(figure, "best") and marked(figure, "default")
 
 
@@ -213,7 +213,7 @@ def test_a_grid_without_a_stable_run_is_x_s(points, unsaved):
     lost = dict.fromkeys(("misfit", *calibration.TARGETS, "c_nl", "c_m"), np.nan)
     table = points["calibration"].assign(status="unstable", **lost)
     tables = {"calibration": table, "calibration_check": calibration.check(table)}
-    figure = plotting.draw(tables, "described", "lost.png")
+    figure = plotting.draw(tables, "compliant", "lost.png")
     assert [len(mark.get_xdata()) for mark in marked(figure, "unstable")] == [9, 9]
     assert not marked(figure, "best")
 

@@ -52,7 +52,7 @@ def response(force, status="ok", setup="described"):
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    """Tables of two stable runs and an unstable one, as read back."""
+    """Tables of two stable runs and an unstable one, as read back, and the runs as stored."""
     folder = tmp_path_factory.mktemp("features")
     runs = [response(0.1), response(0.2), response(0.9, "unstable")]
     paths = []
@@ -69,7 +69,8 @@ def study(tmp_path_factory):
     }
     for name, frame in frames.items():
         write(frame, folder / f"{name}.csv")
-    return {name: read(folder / f"{name}.csv") for name in frames}, runs
+    stored = [dataset.load(path) for _, path in paths]
+    return {name: read(folder / f"{name}.csv") for name in frames}, stored
 
 
 def test_one_row_for_each_run_group_and_split(study):

@@ -15,7 +15,7 @@ ELEMENTS = {2: 17, 4: 10, 8: 6}
 
 def run(n, k, nu, gamma, order=0, engine="kirchhoff", elements=4, step=7e-5, c_m=0.1, **more):
     return {
-        "setup": "described", "n": n, "spacing_m": 0.5 / (n + 1), "crossing_stiffness_N_m": k,
+        "setup": "compliant", "n": n, "spacing_m": 0.5 / (n + 1), "crossing_stiffness_N_m": k,
         "crossing_damping_Ns_m": nu, "damping_per_s": gamma, "filter_order": order,
         "elements_per_section": elements, "time_step_s": step, "engine": engine, "c_m": c_m,
         "c_nl": 0.5, "c_m_se": 0.01, "c_nl_se": 0.01, "status": "ok",
@@ -44,7 +44,7 @@ def origin():
 @pytest.fixture(scope="module")
 def drawn(origin, tmp_path_factory):
     path = tmp_path_factory.mktemp("figures") / "memory_origin.png"
-    return plotting.draw(origin, "described", path), path
+    return plotting.draw(origin, "compliant", path), path
 
 
 def test_the_figure_is_written_and_legible(drawn):
@@ -66,7 +66,7 @@ def test_each_carrier_is_a_line_over_n(drawn, origin):
     assert all(list(bar[0].get_xdata()) == [2, 4, 8] for bar in ax.containers)
 
 
-@pytest.mark.parametrize("setup", ["described", "published"])
+@pytest.mark.parametrize("setup", ["compliant", "published"])
 def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
     rows = []
     for each in runs(Config(), "memory_origin", setup):
@@ -82,7 +82,7 @@ def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
         lambda artist: isinstance(artist, Axes) and "Fibres" in artist.get_xlabel()
     )
     for ax in (nonlinear, memory):
-        assert len(ax.containers) == (5 if setup == "described" else 2)
+        assert len(ax.containers) == (5 if setup == "compliant" else 2)
         assert all(set(bar[0].get_xdata()) == {2, 4, 8} for bar in ax.containers)
 
 
@@ -96,8 +96,8 @@ def test_the_published_setup_compares_filter_on_and_off(origin, unsaved):
     heights = [tuple(bar[0].get_ydata()) for bar in figure.axes[1].containers]
     assert heights == [(0.6,) * 3, (0.1,) * 3]
     assert "filter off" in said(figure)
-    with pytest.raises(ValueError, match="no run of the described setup"):
-        plotting.draw(tables, "described", "none.png")
+    with pytest.raises(ValueError, match="no run of the compliant setup"):
+        plotting.draw(tables, "compliant", "none.png")
 
 
 def test_every_capacity_of_panel_b_has_its_standard_error_as_a_bar(drawn):

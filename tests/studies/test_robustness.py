@@ -34,17 +34,23 @@ def made_up():
 
 
 @pytest.fixture(scope="module")
-def alphas(tmp_path_factory):
+def stored(tmp_path_factory):
+    """The file of a response, which rounds it."""
     path = tmp_path_factory.mktemp("robustness") / "response.nc"
     dataset.save(made_up(), path)
-    return robustness.alphas([path], ["eq3"], ALPHAS)
+    return path
 
 
-def test_each_penalty_is_scored_as_it_would_be_alone(alphas):
+@pytest.fixture(scope="module")
+def alphas(stored):
+    return robustness.alphas([stored], ["eq3"], ALPHAS)
+
+
+def test_each_penalty_is_scored_as_it_would_be_alone(alphas, stored):
     assert list(alphas["alpha"]) == ALPHAS
     assert set(tables.COLUMNS) | {"force_choice"} < set(alphas.columns)
     for row in alphas.itertuples():
-        scored = capacity.score(made_up(), alpha=row.alpha)
+        scored = capacity.score(dataset.load(stored), alpha=row.alpha)
         assert row.c_nl == float(scored["c_nl"])
         assert row.c_m_train == float(scored["c_m_train"])
 

@@ -63,7 +63,7 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
             style.letter(top, "a", "What carries memory (compliant setup)")
             style.letter(bottom, "b", "One thing at a time")
             families = _families(rows)
-            _totals(top, _described_series(families), rows, baseline)
+            _totals(top, _compliant_series(families), rows, baseline)
             _sweeps(bottom, families, baseline)
         style.save(figure, path)
     return figure
@@ -93,7 +93,7 @@ def _of(rows: pd.DataFrame, **equal: float) -> pd.DataFrame:
     return rows
 
 
-def _described_series(families: dict[str, pd.DataFrame]) -> dict:
+def _compliant_series(families: dict[str, pd.DataFrame]) -> dict:
     """Series of panel a by kind and label: rows and look."""
     springs, pinned, filtered = families.values()
     base = _base(springs)

@@ -31,7 +31,7 @@ POLYGONS = (6, 8, 10, 12)
 @check("T1", "T2", "T3", "T4")
 def single_target_of_8x8(evidence: Evidence) -> Answer:
     """|c - paper| <= tolerance, for c of the 8x8 crosshatch at one target: P_4, P_7, and recall
-    at 0.2 s and 0.4 s. In the described setup the crossings were fitted to these: calibrated."""
+    at 0.2 s and 0.4 s. In the compliant setup the crossings were fitted to these: calibrated."""
     places = {"T1": ("order", 4), "T2": ("order", 7), "T3": ("lag", 0.2), "T4": ("lag", 0.4)}
     value = evidence.at("crosshatch", 8, *places[evidence.claim["id"]])
     return Answer(f"{value:.3f}", within_tolerance(evidence.claim, value))
