@@ -21,7 +21,7 @@ from fiberweb.written import cut_short
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # a notebook sets its own, without which matplotlib cannot even be imported elsewhere
-os.environ["MPLBACKEND"] = "agg"
+os.environ.update(MPLBACKEND="agg")
 SUFFIXES = {setup: f"-{setup}" for setup in SETUPS} | {"described": ""}  # of figures
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}
 
