@@ -7,8 +7,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
+from fiberweb import Scene, crosshatch
 from fiberweb.config import Config, load
-from fiberweb.runs import check, run_table
+from fiberweb.runs import Run, check, run_table
 
 SMOKE = [Path(__file__).parents[2] / "config" / name for name in ("config.yaml", "smoke.yaml")]
 BASE = load(*SMOKE).model_dump()
@@ -70,3 +71,30 @@ def test_every_run_of_an_accepted_config_starts(changed):
     for run in table.values():
         run.check()
         assert len(run.scene.times) == run.scene.samples
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"topology": {"length": 0.1}}, "topology.length|spacing = "),
+        ({"noise": {"length": 0.02}}, "spacing = "),
+        ({"chaos": {"spacing": 0.005}}, "spacing = 0.005 m"),
+        ({"scene": {"diameter": 6e-3}}, "diameters of 0.006 m"),
+        ({"robustness": {"seed": [1, 2**32]}}, "4294967296"),
+        ({"scene": {"sample_rate": 256.0}, "narma": {"rate": 10.0}}, "narma.rate = 10 Hz"),
+        ({"scene": {"duration": 1e7}}, "GB of memory"),
+        ({"scene": {"sample_rate": 0.005}}, "sample_rate|frame"),
+        ({"numerics": {"accuracy": None, "engine": "elastica"}}, "crossing_stiffness = inf"),
+    ],
+)
+def test_what_was_refused_only_after_others_had_run(changed, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        check(run_table(load(SMOKE[0], changed)).values())
+    assert "\n" not in str(caught.value)
+
+
+def test_seeds_whose_names_collided():
+    for n, seeds in ((2, (4697, 4705)), (4, (1038, 10809))):
+        scenes = [Scene(crosshatch(n, length=0.5), seed=seed, duration=4.0) for seed in seeds]
+        names = {Run(scene, {"accuracy": "draft"}, {}, "eq3").name for scene in scenes}
+        assert len(names) == 2
