@@ -27,8 +27,8 @@ def simulate(
 
     Args:
         scene: the physics.
-        accuracy: "draft", "standard" (the default of the described setup), "fine" or
-            "reference"; or choose the numerics yourself with the rest.
+        accuracy: "draft", "standard" (the default), "fine" or "reference", of every setup but the
+            published; or choose the numerics yourself with the rest.
         engine: "kirchhoff", "cosserat" or "elastica".
         elements_per_section: elements on a section as long as the network's spacing.
         time_step: s.

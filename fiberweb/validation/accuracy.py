@@ -229,7 +229,7 @@ def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
     """
     rows = checked[checked["against"] == "kirchhoff"]
     errors = rows[["engine", "network", "elements_per_section", "time_step"]].assign(
-        setup="described", trajectory_error=rows["difference"], errors_from=rows["engine"]
+        setup="compliant", trajectory_error=rows["difference"], errors_from=rows["engine"]
     )
     return errors.reindex(columns=list(COLUMNS))
 

@@ -1,4 +1,4 @@
-"""The described setup once more, in Exudyn: nothing of this project's engines is in it.
+"""The compliant setup once more, in Exudyn: nothing of this project's engines is in it.
 
 Planar geometrically exact beams of three nodes (shear and rotary inertia included), consistent
 mass, an implicit generalised-alpha integrator. From the project come the scene's numbers, the
@@ -54,7 +54,7 @@ def respond(scene: Scene, elements: int, step: float, slender: bool = False) -> 
     """Displacement of the crossings, on their first fibre, and of the section midpoints.
 
     Args:
-        scene: of the described setup.
+        scene: of the compliant setup.
         elements: of three nodes, on each section.
         step: s; a whole number of them makes a sample.
         slender: with a tenth of shear compliance and rotary inertia (nought is singular).

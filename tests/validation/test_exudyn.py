@@ -60,5 +60,6 @@ def test_exudyn_stands_in_the_accuracy_table(table):
     errors = accuracy.exudyn_rows(table)
     assert list(errors.columns) == list(accuracy.COLUMNS)
     assert set(errors["network"]) == set(exudyn_check.SCENES)
+    assert set(errors["setup"]) == {scene.setup for scene in exudyn_check.SCENES.values()}
     assert errors["trajectory_error"].between(0.0, 2e-3).all()  # shear and rotary inertia, again
     assert errors["seconds_per_run"].isna().all()
