@@ -131,22 +131,21 @@ def authors_folder(folder, c_nl=0.0, c_m=0.0):
 @pytest.mark.parametrize(
     ("name", "differences", "verdict"),
     [
-        ("G1", {"c_nl": 0.09, "c_m": 0.5}, "holds"),
-        ("G1", {"c_nl": -0.11}, "differs"),
-        ("G2", {"c_m": -0.05, "c_nl": 0.5}, "holds"),
-        ("G2", {"c_m": 0.07}, "differs"),
+        ("G1", {"c_nl": 0.019, "c_m": 0.5}, "holds"),
+        ("G1", {"c_nl": -0.021}, "differs"),
+        ("G2", {"c_m": -0.009, "c_nl": 0.5}, "holds"),
+        ("G2", {"c_m": 0.011}, "differs"),
     ],
 )
 def test_the_authors_ridge_is_compared_where_both_ran(tmp_path, name, differences, verdict):
     folder = authors_folder(tmp_path, **differences)
     text, judged = judge(name, "published", folder)
     size = abs(differences["c_nl" if name == "G1" else "c_m"])
-    points = 4 * len(set(FORCES))
-    assert text == f"rms {size:.3f} of {points} points, rank correlation 1.00"
+    assert text == f"rms {size:.3f} of 62 points; {size:.3f} of 22 beyond B = 1"
     assert judged == verdict
     blown = unstable(ridge_table("published"), f"spacing_m == 0.04 and force_N == {LARGEST}")
     text = judge(name, "published", folder, table=blown)[0]
-    assert f"of {points - 1} points" in text and text.endswith(", 1 unstable")
+    assert "of 21 beyond" in text and text.endswith("; 1 unstable")
     elsewhere = ridge_table("published").query("spacing_m > 0.1")
     assert judge(name, "published", folder, table=elsewhere)[1] == "not computed"
     assert judge(name, "published")[1] == "not computed"
