@@ -139,7 +139,7 @@ def memory_alone_recovers(evidence: Evidence) -> Answer:
 def authors_force_spacing_table(evidence: Evidence) -> Answer:
     """Root mean square of ours less theirs over the points below B = 1 that both tables hold, N,
     spacing and force equal within 0.1 %, inside the range; unstable runs are left out and counted.
-    G1 is C_nl, G2 is C_m; that of the points beyond, where runs are chaotic, is printed beside it."""
+    G1 is C_nl, G2 is C_m; beside it stands that of the points beyond, where runs are chaotic."""
     if evidence.published_tables is None:
         raise NotComputed
     ridge = evidence.table("ridge")
