@@ -42,7 +42,9 @@ class CapacityOriginSection(Section):
     step: Some[Positive] = key(
         [STEP, STEP / 2], "their steps: the first on every mesh, others on the first", "s"
     )
-    look_every: Positive = key(1.0, "time between two looks at the directors", "s")
+    look_every: Positive = key(
+        1.0, "time between two looks at the directors, at least 250 samples of the recording", "s"
+    )
 
 
 SECTION = CapacityOriginSection
