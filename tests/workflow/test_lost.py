@@ -84,7 +84,7 @@ def test_files_cut_short_are_named_and_made_again(tiny):
 @pytest.mark.parametrize(
     ("pattern", "target", "expected"),
     [
-        ("runs/crosshatch-n08*/response.nc", "calibration", {"simulate": 1, "capacity": 1}),
+        ("runs/crosshatch-n04*-f50.0mN-*/response.nc", "features", {"simulate": 1, "capacity": 1}),
         ("tables/described/ridge_best.csv", "size", {"ridge_best": 1}),  # a checkpoint
         ("figures/noise.png", "noise", {"figure": 1}),
     ],
@@ -120,7 +120,7 @@ def test_after_snakemake_was_killed(tiny):
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         if asked == ("--unlock",):
-            tiny.snakemake(*COMMAND)
+            tiny.snakemake(*COMMAND, "--forcerun", "capacity")
     assert (tiny.folder / "tiny" / "report.html").stat().st_size > 1e5
 
 

@@ -137,7 +137,7 @@ def test_smoke_writes_everything(smoked):
     assert list(table["n"]) == [2, 4, 6]
     assert set(table["setup"]) == {"described"} and set(table["status"]) == {"ok"}
     assert table["c_nl"].between(0, 1).all() and table["c_m"].between(0, 1).all()
-    for study in STUDIES:
+    for study in (name for name in STUDIES if "described" in studies.setups(name)):
         for file in studies.load(study).TABLES:
             assert (out / "tables" / "described" / file).exists(), file
         for name in studies.load(study).FIGURES:
