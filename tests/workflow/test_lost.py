@@ -120,7 +120,7 @@ def test_after_snakemake_was_killed(tiny):
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         if asked == ("--unlock",):
-            tiny.snakemake(*COMMAND)
+            tiny.snakemake(*COMMAND, "--forcerun", "capacity")
     assert (tiny.folder / "tiny" / "report.html").stat().st_size > 1e5
 
 
