@@ -29,7 +29,8 @@ ridge: {n: 2, spacing: [0.06], force: [0.05]}
 size: {n: [2], published_duration: 2.0, published_c_nl_force: [0.05], published_c_m_force: [0.05]}
 pretension: {spacing: [0.06], tension: [0.01], published_force: [0.05]}
 features: {n: 4, force: [0.05], verdict_force: 0.05}
-memory_origin: {n: [2]}
+capacity_origin: {n: [2], force_n: 2, force: [0.05], element: [0.02], step: [5.0e-6]}
+memory_origin: {n: [2], filter_element: [0.02], filter_step: [5.0e-6]}
 """
 # the profile asks for an executor that only a cluster's user installs
 CLUSTER = ("--profile", "profiles/slurm", "--executor", "local")
