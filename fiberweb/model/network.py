@@ -14,8 +14,8 @@ import numpy as np
 from fiberweb.arguments import plain, positive, spelt, whole
 
 METRES = " must be a positive length in metres"
-# Beyond these a network alone takes minutes to lay out, and a second of its readouts gigabytes.
-MOST_FIBRES, MOST_VERTICES = 500, 60
+# Beyond these a network alone takes minutes to lay out: a polygon has some n^4 / 24 crossings.
+MOST_FIBRES, MOST_VERTICES = 500, 16
 COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
 
 

@@ -31,6 +31,8 @@ def check(response, scoring: str | None, options: dict) -> None:
             f"response has displacement along axis = {axes}; give both of {list(AXES)}"
         )
     _check_attributes(response, ("status",))
+    if (status := response.attrs["status"]) not in ("ok", "unstable"):
+        raise ValueError(f"response has status = {shown(status)}; set it to {ATTRIBUTES['status']}")
 
 
 def check_input(response, scoring: str | None, options: dict) -> None:
@@ -40,6 +42,8 @@ def check_input(response, scoring: str | None, options: dict) -> None:
     _check_variables(response, INPUT)
     # its setup says how a response is scored, unless the caller does
     _check_attributes(response, () if scoring else ("setup",))
+    if not scoring and (setup := response.attrs["setup"]) not in [*SETUPS]:
+        raise ValueError(f"response has setup = {shown(setup)}; set it to {ATTRIBUTES['setup']}")
 
 
 def check_orders(orders) -> int:

@@ -17,7 +17,15 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from fiberweb.scoring import arguments, recording
-from fiberweb.scoring.regression import Fit, Options, checked, fit_targets, joined, mean_of
+from fiberweb.scoring.regression import (
+    Fit,
+    Options,
+    checked,
+    fit_targets,
+    joined,
+    mean_of,
+    scale_input,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,6 +78,7 @@ def trivial_readouts(u: np.ndarray, sample_rate: float) -> dict[str, np.ndarray]
     Hz); ``powers`` (T, 3): u, u^2, u^3. Derivatives are those of the cubic spline through the
     samples: exact for an input that is itself a spline with its knots on frames.
     """
+    scale_input(u)  # refuses what has no spline
     time = np.arange(len(u)) / sample_rate
     spline = CubicSpline(time, u)
     return {

@@ -11,6 +11,7 @@ HORIZON = 1.0  # s, longest recall lag
 ALPHA = 0.01  # ridge penalty
 SPLIT = 0.75  # fraction of the frames trained on
 LEAST_TRAINED = 2  # frames: of fewer, a readout has no deviation to be divided by
+LEAST_TESTED = 2  # frames: of fewer, a target has no variance
 
 
 def training_end(start: int, frames: int, split: float) -> int:
@@ -35,7 +36,13 @@ def check_frames(
             f"{horizon:g} s and a split beyond it; record at least "
             f"{2 * horizon + skip / sample_rate:g} s"
         )
-    trained = training_end(longest, frames - skip, split) - longest
+    end = training_end(longest, frames - skip, split)
+    if (tested := frames - skip - end) < LEAST_TESTED:
+        raise ValueError(
+            f"split = {split:g} of {frames / sample_rate:g} s leaves {tested} frames to test on, "
+            f"and {LEAST_TESTED} are needed; give a smaller fraction or record longer"
+        )
+    trained = end - longest
     if trained < LEAST_TRAINED:
         raise ValueError(
             f"sample_rate = {sample_rate:g} Hz over {frames / sample_rate:g} s leaves "

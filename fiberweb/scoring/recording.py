@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 JITTER = 0.01  # of a frame, by which a frame may be off: what single precision makes of 100 s
 
+SECONDS = ("s", "sec", "second", "seconds")
+
 
 def own_scoring(response: xr.Dataset) -> str:
     """The scoring of a response's own setup: 'published' for that one, 'clean' for the others."""
@@ -41,6 +43,8 @@ def seconds(response: xr.Dataset) -> np.ndarray:
     time = response["time"].values
     if time.dtype.kind in "mM":  # what xarray makes of some units
         return (time - time[:1]) / np.timedelta64(1, "s")
+    if (units := response["time"].attrs.get("units", "s")) not in SECONDS:
+        raise ValueError(f"response has time in {units!r}; give it in s, and leave units at 's'")
     if time.dtype.kind not in "iuf" or not np.isfinite(time).all():
         raise ValueError(f"response has time = {shown(time)}, where numbers of seconds are needed")
     return time.astype(float)

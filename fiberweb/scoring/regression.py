@@ -112,12 +112,7 @@ def targets(u: np.ndarray, orders: Sequence[int], lags: Sequence[int]) -> np.nda
 def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
     """u (T - skip,) and readouts (T - skip, p) as floats; ValueError says what is wrong."""
     sample_rate = positive("sample_rate", sample_rate, " is not usable; give a rate above 0 Hz")
-    for name, values in {"u": u, "readouts": readouts}.items():
-        if np.ma.is_masked(values):
-            raise ValueError(f"{name} has masked values; fill them, or cut out a stretch without")
-        if np.iscomplexobj(values):
-            raise ValueError(f"{name} is complex; give its real and imaginary part as two signals")
-    u, readouts = np.asarray(u, dtype=float), np.asarray(readouts, dtype=float)
+    u, readouts = _real("u", u), _real("readouts", readouts)
     if u.ndim != 1 or readouts.ndim != 2 or len(u) != len(readouts) or not readouts.shape[1]:
         raise ValueError(
             f"u has shape {u.shape} and readouts {readouts.shape}; "
@@ -134,6 +129,18 @@ def checked(u, readouts, sample_rate, options) -> tuple[np.ndarray, np.ndarray]:
             "finite; an unstable run has no capacity, so give a recording that stays finite"
         )
     return u, readouts
+
+
+def _real(name: str, values) -> np.ndarray:
+    """Values as floats; ValueError, one sentence, if they would have to be bent to that."""
+    values = values if isinstance(values, np.ndarray) else np.ma.asarray(values)
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name} has masked values; fill them, or cut out a stretch without")
+    if np.iscomplexobj(values):
+        raise ValueError(f"{name} is complex; give its real and imaginary part as two signals")
+    if values.dtype.kind not in "fiu":
+        raise ValueError(f"{name} has values of type {values.dtype}; give an array of numbers")
+    return np.asarray(values, dtype=float)
 
 
 def fit_targets(u, readouts, orders, lags, horizon, options) -> tuple[Iterator[Fit], Iterator[Fit]]:

@@ -67,8 +67,11 @@ class Plan:
 
     @cached_property
     def limit(self) -> float:
-        """Stability limit of the time step without the Laplace filter, s."""
-        return load(self.engine).largest_step(self.mesh)
+        """Stability limit of the time step without the Laplace filter, s; NaN if there is none."""
+        try:
+            return load(self.engine).largest_step(self.mesh)
+        except RuntimeError:  # ARPACK's, of masses or stiffnesses that overflow
+            return math.nan
 
     @cached_property
     def numerics(self) -> Numerics:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fiberweb import score
+from fiberweb import baselines, score
 from fiberweb.scoring import capacity, recording, regression
 from tests.scoring.reservoirs import RATE, drive, reservoir
 
@@ -68,8 +68,12 @@ def test_time_in_single_precision_or_as_xarray_decodes_it_is_the_same_time(respo
         (lambda r: r.drop_vars("time"), "no coordinate 'time'"),
         (lambda r: r.assign_coords(time=list(map(str, r["time"].values))), "numbers of seconds"),
         (lambda r: r.isel(time=[0]), "response has 1 frames"),
+        (
+            lambda r: r.assign_coords(time=("time", 1e3 * r["time"].values, {"units": "ms"})),
+            "time in 'ms'; give it in s",
+        ),
     ],
-    ids=["gap", "one lost", "reversed", "still", "none", "text", "one"],
+    ids=["gap", "one lost", "reversed", "still", "none", "text", "one", "units"],
 )
 def test_time_that_cannot_be_counted_in_frames_is_refused(response, change, sentence):
     with pytest.raises(ValueError, match=sentence):
@@ -81,10 +85,29 @@ def test_masked_and_complex_values_are_refused(response):
     masked = np.ma.masked_array(moved, np.arange(moved.size).reshape(moved.shape) == 100)
     with pytest.raises(ValueError, match=r"^readouts has masked values"):
         capacity.score_arrays(u, masked, RATE)
+    with pytest.raises(ValueError, match=r"^readouts has masked values"):
+        capacity.score_arrays(u, list(masked), RATE)
     with pytest.raises(ValueError, match=r"^readouts is complex"):
         capacity.score_arrays(u, moved + 0j, RATE)
+    for kind in (object, str, "timedelta64[s]"):
+        with pytest.raises(ValueError, match=r"^readouts has values of type"):
+            capacity.score_arrays(u, moved.astype(kind), RATE)
     with pytest.raises(ValueError, match=r"^readouts is complex"):
         score(response.assign(displacement=response["displacement"] * (1 + 1j)))
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda r: score(r, split=0.9999), r"^split = 0\.9999 of 40 s leaves 1 frames to test on"),
+        (lambda r: score(r.assign_attrs(status="OK")), "status = 'OK'; set it to 'ok' or"),
+        (lambda r: score(r.assign_attrs(setup="mine")), "setup = 'mine'; set it to one of"),
+        (lambda r: baselines(r.where(r["time"] > 1.0)), "^u holds values that are not finite"),
+    ],
+)
+def test_what_was_scored_without_a_word_is_refused(response, change, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        change(response)
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,14 @@ def points(section: BucklingSection, lab: Lab) -> Iterator[Point]:
         yield Point(lab.scene(network, force=force, centre_lines=True), "buckling")
 
 
+def check(section: BucklingSection, lab: Lab) -> None:
+    """Raise ValueError if two animations would have one name."""
+    names = [f"{number:g}" for number in section.buckling]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"buckling.buckling holds {name} twice: keep one of them")
+
+
 TABLES = {"buckling.csv": one_row_per_run()}
 # the animations have a rule of their own
 FIGURES = {
