@@ -57,7 +57,7 @@ def changes(draw) -> dict:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[*HealthCheck])
+@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=[*HealthCheck])
 @given(changed=changes())
 def test_every_run_of_an_accepted_config_starts(changed):
     """Scenes are resolved to a mesh and a stable step, and not integrated."""
