@@ -38,23 +38,10 @@ SHUFFLE_SEED = 42  # feature selection script: random_state of sklearn's train_t
 # Simulation scripts of crosshatch and polygon: what a scene leaves open. The damper's 10 /s act on
 # velocity and, by its units, as 40 /s on rotation; a stiff pin and the Laplace filter of order 6
 # on the crosshatch only, a softer pin on the polygon.
+_BOTH = dict(crossing_damping=0.0, damping=10.0, dead_band=True)
 PHYSICS = {
-    "crosshatch": dict(
-        crossing_stiffness=1e6,
-        crossing_damping=0.0,
-        damping=10.0,
-        filter_order=6,
-        ends="sliding",
-        dead_band=True,
-    ),
-    "polygon": dict(
-        crossing_stiffness=1e3,
-        crossing_damping=0.0,
-        damping=10.0,
-        filter_order=0,
-        ends="pinned",
-        dead_band=True,
-    ),
+    "crosshatch": dict(crossing_stiffness=1e6, filter_order=6, ends="sliding", **_BOTH),
+    "polygon": dict(crossing_stiffness=1e3, filter_order=0, ends="pinned", **_BOTH),
 }
 
 # Feature selection script, whose readouts near the springs were chosen by hand: for each row the

@@ -24,7 +24,8 @@ def seen(tmp_path_factory):
     path = tmp_path_factory.mktemp("origin") / "response.nc"
     response = simulate(Scene(crosshatch(2, length=0.5), "published", duration=3.0))
     dataset.save(response.assign_attrs(run="published"), path)
-    return path, band.growth(path, EVERY), band.histogram(path, EVERY)
+    looks = band.looks(path, EVERY)
+    return path, band.growth(looks), band.histogram(looks)
 
 
 def test_the_band_grows_from_nothing(seen):

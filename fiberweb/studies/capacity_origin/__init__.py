@@ -101,17 +101,22 @@ TABLES = {
         options=scoring_of,
     ),
     "capacity_origin_baselines.csv": input_baselines(),
-    "dead_band.csv": Table(
-        "fiberweb.studies.capacity_origin.band:growth",
+    "dead_band_looks.nc": Table(
+        "fiberweb.studies.capacity_origin.band:looks",
         responses=watched,
         single=True,
         options=_look,
+    ),
+    "dead_band.csv": Table(
+        "fiberweb.studies.capacity_origin.band:growth", tables=("dead_band_looks.nc",)
     ),
     "dead_band_histogram.csv": Table(
-        "fiberweb.studies.capacity_origin.band:histogram",
-        responses=watched,
-        single=True,
-        options=_look,
+        "fiberweb.studies.capacity_origin.band:histogram", tables=("dead_band_looks.nc",)
     ),
 }
-FIGURES = {"capacity_origin": Figure("fiberweb.studies.capacity_origin.figure:draw", tuple(TABLES))}
+FIGURES = {
+    "capacity_origin": Figure(
+        "fiberweb.studies.capacity_origin.figure:draw",
+        tuple(file for file in TABLES if file.endswith(".csv")),
+    )
+}

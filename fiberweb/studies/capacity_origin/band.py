@@ -6,10 +6,10 @@ Directors are not part of a response, so the run is repeated and looked at now a
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from fiberweb.engines import load
 from fiberweb.engines.base import Numerics
@@ -26,47 +26,44 @@ BAND_COLUMNS = (
 )  # fmt: skip
 
 
-class Look(NamedTuple):
-    """What is seen at one time: at each inner node of a fibre, both of shape (nodes,), rad."""
-
-    time: float  # s
-    turn: np.ndarray  # angle between the elements beside it
-    band: np.ndarray  # half width of the dead band there
-
-
-def looks(response_path: str | Path, every: float) -> tuple[Mesh, list[Look]]:
-    """The mesh of a run, and looks at it every so many seconds."""
+def looks(response_path: str | Path, every: float) -> xr.Dataset:
+    """A run looked at every so many seconds: at each inner node of a fibre (rad) ``turn(time,
+    node)``, the angle between the elements beside it, and ``band(time, node)``, half the width of
+    the dead band there; attributes setup, scene and element (m)."""
     attrs = dataset.load(response_path).attrs
     scene = Scene.from_json(attrs["scene"])
     mesh = build(scene)
     inner = np.flatnonzero(_inner(mesh))
-    seen: list[Look] = []
+    times, turns, bands = [], [], []
 
     def watch(sample: int, angle: np.ndarray, length2: np.ndarray) -> None:
         time = sample / scene.sample_rate
-        if time < len(seen) * every - 1e-9:
+        if time < len(times) * every - 1e-9:
             return
-        turn = abs(angle[inner] - angle[inner - 1])
+        times.append(time)
+        turns.append(abs(angle[inner] - angle[inner - 1]))
         # the couple is zero while the squared turn is below the sum of what both have grown by
-        band = np.sqrt(np.maximum(length2[inner] + length2[inner - 1] - 2.0, 0.0))
-        seen.append(Look(time, turn, band))
+        bands.append(np.sqrt(np.maximum(length2[inner] + length2[inner - 1] - 2.0, 0.0)))
 
     load(attrs["engine"]).integrate(
         mesh, Numerics(attrs["engine"], None, attrs["time_step"]), watch
     )
-    return mesh, seen
+    angles, radians = ("time", "node"), {"units": "rad"}
+    return xr.Dataset(
+        {"turn": (angles, np.array(turns), radians), "band": (angles, np.array(bands), radians)},
+        {"time": ("time", times, {"units": "s"})},
+        {"setup": scene.setup, "scene": attrs["scene"], "element": mesh.edges(0)[0]},
+    )
 
 
-def growth(response_path: str | Path, every: float) -> pd.DataFrame:
+def growth(seen: xr.Dataset) -> pd.DataFrame:
     """One row a look: quantiles of turns and of the band's half width (rad), the share of nodes
     that bend freely because their turn is inside; and what else would hide the median band: a
     curvature (1/m), a strain at the surface, a moment (N m), a bow of one section (m)."""
-    mesh, seen = looks(response_path, every)
-    scene = mesh.scene
-    element = mesh.edges(0)[0]
+    scene = Scene.from_json(seen.attrs["scene"])
     rows = []
-    for time, turn, band in seen:
-        curvature = np.median(band) / element
+    for time, turn, band in zip(seen["time"].values, seen["turn"].values, seen["band"].values):
+        curvature = np.median(band) / seen.attrs["element"]
         rows.append(
             (
                 scene.setup, time, *np.quantile(turn, SHARES), *np.quantile(band, SHARES),
@@ -77,18 +74,17 @@ def growth(response_path: str | Path, every: float) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(BAND_COLUMNS))
 
 
-def histogram(response_path: str | Path, every: float) -> pd.DataFrame:
+def histogram(seen: xr.Dataset) -> pd.DataFrame:
     """Share of all nodes and looks in each bin of the logarithm of their turn, and of their band:
     columns setup, from_rad, to_rad, turn, band."""
-    mesh, seen = looks(response_path, every)
     counts = {}
     for name in ("turn", "band"):
-        values = np.concatenate([getattr(look, name) for look in seen[1:]])  # all are 0 at first
+        values = seen[name].values[1:].ravel()  # all are 0 at first
         logs = np.clip(np.log10(np.maximum(values, 1e-30)), BINS[0], BINS[-1])
         counts[name] = np.histogram(logs, BINS)[0] / len(values)
     edges = 10.0**BINS
     return pd.DataFrame(
-        {"setup": mesh.scene.setup, "from_rad": edges[:-1], "to_rad": edges[1:], **counts}
+        {"setup": seen.attrs["setup"], "from_rad": edges[:-1], "to_rad": edges[1:], **counts}
     )
 
 
