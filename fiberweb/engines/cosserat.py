@@ -115,7 +115,7 @@ def coefficients(
 ) -> tuple[passes.Rods, passes.Spin]:
     """What the passes multiply with, and what the ledger needs beside the nodes' masses."""
     scene = mesh.scene
-    inertia = rotary_inertia(scene) * layout.edge
+    inertia = rotary_inertia(mesh) * layout.edge
     uniform, stretched = rotation_damping(mesh, layout, inertia)
     kick = kick_before_decay(scene, step)
     kick_x, kick_y = kick * layout.free_x / layout.mass, kick * layout.free_y / layout.mass
@@ -132,8 +132,8 @@ def coefficients(
         *packed(*(a[interleaving.nodes] for a in over_nodes)),
         *packed(*(a[interleaving.edges] for a in over_elements)),
         axial=scene.axial_stiffness,
-        shear=shear_stiffness(scene),
-        over_inertia=1.0 / rotary_inertia(scene),
+        shear=shear_stiffness(mesh),
+        over_inertia=1.0 / rotary_inertia(mesh),
         decay=np.exp(-scene.damping * step),
         spin_kick=kick,
         dead_band=scene.dead_band,

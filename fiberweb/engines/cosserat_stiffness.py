@@ -9,7 +9,6 @@ from scipy.sparse import csr_array, diags_array, vstack
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.engines.stability import differences, leapfrog_limit
 from fiberweb.model.mesh import Mesh
-from fiberweb.model.scene import Scene
 
 SHEAR_FACTOR = 27.0 / 28.0  # alpha_c of a round section at Poisson's ratio 1/2, as PyElastica's
 
@@ -20,16 +19,17 @@ def largest_step(mesh: Mesh) -> float:
     return leapfrog_limit(mesh, layout, *stiffness_and_mass(mesh, layout), exact_dampers=False)
 
 
-def shear_stiffness(scene: Scene) -> float:
-    """alpha_c G A (N), with G = E / 3."""
-    return scene.axial_stiffness / 3.0 * SHEAR_FACTOR
+def shear_stiffness(mesh: Mesh) -> float:
+    """alpha_c G A (N), with G = E / 3, over the stoutness."""
+    return mesh.scene.axial_stiffness / 3.0 * SHEAR_FACTOR / mesh.stoutness
 
 
-def rotary_inertia(scene: Scene) -> float:
+def rotary_inertia(mesh: Mesh) -> float:
     """Of a fibre about its cross-section's diameter, per length (kg m): density times
     `fiberweb.model.buckling.second_moment`, multiplied in the order that keeps earlier runs'
-    last bits."""
-    return scene.density * np.pi * scene.diameter**4 / 64
+    last bits, times the stoutness."""
+    scene = mesh.scene
+    return scene.density * np.pi * scene.diameter**4 / 64 * mesh.stoutness
 
 
 def stiffness_and_mass(mesh: Mesh, layout: Layout):
@@ -51,8 +51,8 @@ def stiffness_and_mass(mesh: Mesh, layout: Layout):
     scene = mesh.scene
     strains = vstack([axial, lateral - angle, turn])
     moduli = np.r_[
-        scene.axial_stiffness / edge, shear_stiffness(scene) / edge,
+        scene.axial_stiffness / edge, shear_stiffness(mesh) / edge,
         scene.bending_stiffness / layout.span[bent],
     ]  # fmt: skip
-    inertia = rotary_inertia(scene) * layout.edge
+    inertia = rotary_inertia(mesh) * layout.edge
     return strains.T @ diags_array(moduli) @ strains, np.r_[np.tile(layout.mass, 2), inertia]

@@ -48,6 +48,8 @@ class Mesh:
             (intervals, 4); the interval is 1 / scene.drive_rate s long.
         readouts: what is recorded.
         start: displacement at t = 0, shape (nodes, 2), m.
+        stoutness: what rotary inertia and shear compliance are multiplied with, to see more of
+            what they do at a step that is longer by as much; see `fiberweb.validation.certificate`.
     """
 
     scene: Scene
@@ -65,6 +67,7 @@ class Mesh:
     drive: np.ndarray
     readouts: tuple[Readout, ...]
     start: np.ndarray
+    stoutness: float = 1.0
 
     @property
     def elements(self) -> int:

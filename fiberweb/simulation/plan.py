@@ -29,6 +29,7 @@ SAFETY_BY_STRAIN = {1e-3: 0.7, 1e-2: 0.4}
 # Spacing in diameters below which leaving out shear costs more than some 0.2 of the trajectories.
 # Source: model_ladder.csv has 0.0023 at 50 diameters, and it grows as the inverse square.
 MIN_SLENDERNESS = 5.0
+SHORTEST = 0.05  # element in diameters: below one, a finer mesh of a rod says nothing more
 MOST_STEPS = 1e12  # of a run: at a microsecond for each, eleven days
 
 
@@ -163,6 +164,12 @@ def request(
         raise ValueError(f"engine = {shown(engine)}: {unknown_key(engine, ENGINES, kind='engine')}")
     if elements_per_section is not None:
         elements_per_section = whole("elements_per_section", elements_per_section, 1)
+        most = max(1, math.floor(scene.network.spacing / (SHORTEST * scene.diameter)))
+        if elements_per_section > most:
+            raise ValueError(
+                f"elements_per_section = {elements_per_section}: elements far shorter than a "
+                f"fibre of {scene.diameter:g} m is thick; take at most {most}"
+            )
     if time_step is not None:
         time_step = positive("time_step", time_step, " must be a positive number of seconds")
         _refuse_endless(scene, time_step)
