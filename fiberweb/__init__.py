@@ -10,7 +10,9 @@ from fiberweb.model.scene import Scene
 from fiberweb.simulation.explain import explain
 from fiberweb.simulation.simulate import simulate
 
-__all__ = ["Scene", "baselines", "crosshatch", "explain", "polygon", "score", "simulate"]
+__all__ = [
+    "Scene", "baselines", "certify", "crosshatch", "explain", "polygon", "score", "simulate",
+]  # fmt: skip
 
 
 def __getattr__(name):
@@ -23,4 +25,8 @@ def __getattr__(name):
         from fiberweb.scoring.tables import baselines
 
         return baselines
+    if name == "certify":
+        from fiberweb.validation.certificate import certify
+
+        return certify
     raise AttributeError(f"module 'fiberweb' has no attribute {name!r}")

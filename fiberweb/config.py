@@ -45,6 +45,11 @@ class General(Section):
     published_all: bool = key(
         False, "every run of the authors in the published setup, not only what two cores afford"
     )
+    certify: bool = key(
+        False,
+        "run each network of Fig. 1 again with step, mesh, engine, start and the authors' numerics "
+        "changed one at a time, to mark what is not physics; takes five times as long",
+    )
     scene: SceneSection = SceneSection()
     setups: SetupsSection = SetupsSection()
     numerics: NumericsSection = NumericsSection()

@@ -47,6 +47,7 @@ class Recipes:
         self.own: dict[str, str] = {}
         # of hundreds of runs, each asked for by several tables
         self.response, self.capacity = cache(self.response), cache(self.capacity)
+        self.certificate = cache(self.certificate)
         self.possible = cache(self.possible)
 
     def possible(self, study: str, setup: str) -> list[Run]:
@@ -62,6 +63,11 @@ class Recipes:
     def capacity(self, run: str) -> str:
         """Of a run by its name."""
         made_by = code("capacity", "fiberweb.scoring.capacity", "fiberweb.simulation.dataset")
+        return digest_of(made_by, self._runs[run].scoring, self.response(run))
+
+    def certificate(self, run: str) -> str:
+        """Of a run by its name."""
+        made_by = code("certificate", "fiberweb.validation.certificate", "fiberweb.products")
         return digest_of(made_by, self._runs[run].scoring, self.response(run))
 
     def table(self, file: str, setup: str) -> str:
@@ -83,6 +89,9 @@ class Recipes:
             [self.table(given, setup) for given in spec.tables],
             [self.capacity(name) for name in names] if spec.capacities else [],
             [self.response(name) for name in names] if spec.responses else [],
+            [self.certificate(name) for name in names if self._config.certify]
+            if spec.certificates
+            else [],
         )
 
     def figure(self, name: str, setup: str) -> str:

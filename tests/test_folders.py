@@ -47,7 +47,7 @@ def test_what_is_refused(key, written, words):
 
 
 def test_results_need_a_folder():
-    with pytest.raises(ValueError, match="results = .*at least 1 character"):
+    with pytest.raises(ValueError, match=r"results = .*at least 1 character"):
         load({"results": ""})
     assert load({"published_tables": ""}).published_tables == ""
 

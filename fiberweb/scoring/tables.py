@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from fiberweb import tables
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import arguments, capacity, recording
 from fiberweb.scoring.limits import ALPHA
 from fiberweb.simulation import dataset
-from fiberweb.tables import ordered
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,6 +36,7 @@ NUMERICS = {
     "elements_per_section": lambda _, scored: scored.attrs["elements_per_section"],
     "time_step_s": lambda _, scored: scored.attrs["time_step"],
 }
+VERDICTS = {"c_nl": "c_nl_verdict", "c_m": "c_m_verdict"}  # what each capacity is
 CURVE_COLUMNS = ("setup", "topology", "n", "target", "at", "c", "c_train", "c_raw", "run")
 BASELINE_COLUMNS = ("readout", "c_nl", "c_m")
 
@@ -57,18 +58,28 @@ def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataF
     return _frame([_row(*_read_run(each), extra) for each in scored], (*COLUMNS, *extra))
 
 
-def study(capacity_paths: Sequence[str | Path], choices: Sequence[str]) -> pd.DataFrame:
-    """One row per run and choice of its force: `COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`.
+def study(
+    capacity_paths: Sequence[str | Path],
+    choices: Sequence[str],
+    certificate_paths: Sequence[str | Path] = (),
+) -> pd.DataFrame:
+    """One row per run and choice of its force: `COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`, and
+    `VERDICTS` if there are certificates.
 
     Args:
         capacity_paths: as for `rows`; a run that two choices agree on comes twice.
         choices: of each path, see `fiberweb.studies.base.Point`.
+        certificate_paths: of each path, see `fiberweb.validation.certificate`; or none.
     """
     records = []
     for path, choice in zip(capacity_paths, choices, strict=True):
         scene, scored = _read_run(path)
         records.append(_row(scene, scored, {"force_choice": choice} | PHYSICS | NUMERICS))
-    return _frame(records, (*COLUMNS, "force_choice", *PHYSICS, *NUMERICS))
+    for record, path in zip(records, certificate_paths):
+        verdicts = tables.read(path).groupby("capacity")["verdict"].first()
+        record |= {column: verdicts[name] for name, column in VERDICTS.items()}
+    verdicts = VERDICTS.values() if certificate_paths else ()
+    return _frame(records, (*COLUMNS, "force_choice", *PHYSICS, *NUMERICS, *verdicts))
 
 
 def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
@@ -146,4 +157,4 @@ def _row(scene: Scene, scored, extra: dict[str, object]) -> dict:
 
 
 def _frame(records: list, columns: tuple[str, ...]) -> pd.DataFrame:
-    return ordered(pd.DataFrame(records, columns=list(columns)))
+    return tables.ordered(pd.DataFrame(records, columns=list(columns)))

@@ -117,10 +117,12 @@ class Table:
 
     Attributes:
         make: "module:function". Called with the tables, then by keyword with those of
-            ``capacity_paths``, ``response_paths`` (lists, or ``response_path`` if `single`) and
-            ``choices`` (see `Point`) that are asked for, and with the options.
+            ``capacity_paths``, ``certificate_paths``, ``response_paths`` (lists, or
+            ``response_path`` if `single`) and ``choices`` (see `Point`) that are asked for, and
+            with the options.
         capacities, responses: which of the study's runs it is given: a function of the list of
             them and of the section, or None.
+        certificates: whether it is given their certificates too, if the config asks for them.
         single: whether it is given one response and not a list.
         choices: whether it is given the choice of each run.
         tables: names of files of the same setup.
@@ -130,6 +132,7 @@ class Table:
     make: str
     capacities: Callable | None = None
     responses: Callable | None = None
+    certificates: bool = False
     single: bool = False
     choices: bool = False
     tables: tuple[str, ...] = ()
@@ -141,9 +144,10 @@ class Table:
         return chosen(runs, section) if chosen else []
 
 
-def one_row_per_run() -> Table:
+def one_row_per_run(certificates: bool = False) -> Table:
     """The table that most studies have."""
-    return Table("fiberweb.scoring.tables:study", capacities=every, choices=True)
+    make = "fiberweb.scoring.tables:study"
+    return Table(make, capacities=every, certificates=certificates, choices=True)
 
 
 def input_baselines(of: Callable = first) -> Table:

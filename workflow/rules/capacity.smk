@@ -1,4 +1,4 @@
-# Responses to capacities.
+# Responses to capacities, and what these rest on.
 
 
 rule capacity:
@@ -19,3 +19,24 @@ rule capacity:
         "Scoring {wildcards.run}"
     script:
         "../scripts/capacity.py"
+
+
+rule certificate:
+    input:
+        response="<results>/runs/{run}/response.nc",
+        compiled="<results>/warmup.done",
+    output:
+        "<results>/runs/{run}/certificate.csv",
+    log:
+        "<logs>/certificate/{run}.log",
+    benchmark:
+        "<benchmarks>/certificate/{run}.tsv"
+    conda:
+        "../../envs/environment.yaml"
+    params:
+        scoring=lambda wildcards: RUNS[wildcards.run].scoring,
+        recipe=lambda wildcards: RECIPES.certificate(wildcards.run),
+    message:
+        "Running {wildcards.run} again with what is no physics changed"
+    script:
+        "../scripts/certificate.py"

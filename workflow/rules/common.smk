@@ -56,6 +56,10 @@ def capacity(run):
     return f"{RESULTS}/runs/{run.name}/capacity.nc"
 
 
+def certificate(run):
+    return f"{RESULTS}/runs/{run.name}/certificate.csv"
+
+
 def study_runs(study, setup):
     """The runs of a study; those that start from the ridge's best forces wait for them."""
     if studies.waits(study, setup):

@@ -90,7 +90,7 @@ def example(runs: Sequence, section: TopologySection) -> Sequence:
 
 
 TABLES = {
-    "topology.csv": one_row_per_run(),
+    "topology.csv": one_row_per_run(certificates=True),
     "topology_curves.csv": Table("fiberweb.scoring.tables:curves", capacities=every),
     "topology_baselines.csv": input_baselines(of=example),
     "topology_traces.nc": Table(

@@ -28,6 +28,8 @@ TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resol
 CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
 DRIVEN = r"$\updownarrow$"
 TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
+# what a certificate found a capacity to follow, beside its mark
+FOLLOWS = {"filter": "f", "rounding": "r", "mesh": "m", "step": "t", "shear": "s", "chaos": "c"}
 # caps wider than the markers, or small bars would not show
 TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick": 0.7}
 
@@ -159,6 +161,12 @@ def _marks(table: pd.DataFrame) -> dict[str, Line2D]:
         "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
         "training": Line2D([], [], **TRAINING),
     }
+    found = "".join(_followed(row, name) for row in table.itertuples() for name in plots.TOTALS)
+    handles |= {
+        f"follows {cause}": Line2D([], [], color=style.INK, marker=f"${mark}$", ms=3, mew=0.2, lw=0)
+        for cause, mark in FOLLOWS.items()
+        if mark in found
+    }
     return handles | panels.baseline_and_unstable((table["status"] == "unstable").any())
 
 
@@ -173,8 +181,18 @@ def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
             run.n, getattr(run, name), yerr=getattr(run, f"{name}_se"), color=colour[run.n],
             ecolor=style.INK, zorder=3, **TEST,
         )  # fmt: skip
+        ax.annotate(
+            _followed(run, name), (run.n, getattr(run, name)), (0, 4.5), fontsize="x-small",
+            textcoords="offset points", ha="center", gid="follows",
+        )  # fmt: skip
     style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
     ax.margins(x=0.08)
+
+
+def _followed(run, name: str) -> str:
+    """Marks of what a capacity follows that is no physics; none where there is no certificate."""
+    verdict = getattr(run, f"{name}_verdict", "")
+    return "".join(mark for cause, mark in FOLLOWS.items() if cause in str(verdict))
 
 
 def _traces(part: SubFigure, traces: xr.Dataset) -> None:

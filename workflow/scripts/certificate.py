@@ -1,0 +1,12 @@
+"""What the capacities of one run rest on."""
+
+from logs import to_log
+
+from fiberweb import products
+from fiberweb.validation.certificate import certificate
+
+to_log(snakemake)
+print("run", snakemake.wildcards.run)
+
+response = products.read(snakemake.input.response)
+products.write(certificate(response, **snakemake.params.scoring), snakemake.output[0])
