@@ -1,6 +1,7 @@
 """Tables hold what the capacity files say."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -133,3 +134,12 @@ def test_study_has_a_row_for_each_run_and_choice(study):
     assert (row["engine"], row["elements_per_section"], row["time_step_s"]) == ("none", 4, 1e-5)
     with pytest.raises(ValueError):
         tables.study([path], ["eq3", "best_c_m"])
+
+
+def test_a_study_carries_the_verdicts_of_certificates(study, tmp_path):
+    verdicts = {"c_nl": "mesh", "c_m": "physics"}
+    rows = [(name, change, verdicts[name]) for change in ("a", "b") for name in verdicts]
+    path = tmp_path / "certificate.csv"
+    pd.DataFrame(rows, columns=["capacity", "changed", "verdict"]).to_csv(path, index=False)
+    (table,) = tables.study([study[1][0]], ["eq3"], certificate_paths=[path]).itertuples()
+    assert (table.c_nl_verdict, table.c_m_verdict) == ("mesh", "physics")

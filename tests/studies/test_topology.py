@@ -5,6 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.text import Text
 from numpy.polynomial.legendre import legvander
 
 from fiberweb import Scene, crosshatch
@@ -116,6 +117,19 @@ def test_an_unstable_run_is_an_x_in_both_totals(drawn):
     marks = marked(drawn[0])
     assert [(list(mark.get_xdata()), mark.get_marker()) for mark in marks] == [([10], "X")] * 2
     assert "unstable run" in said(drawn[0])
+
+
+def test_what_a_certificate_found_stands_at_the_foot(data, drawn, unsaved):
+    found = {"c_nl_verdict": "filter and rounding", "c_m_verdict": "one realisation of chaos"}
+    figure = topology.draw(data | {"topology": data["topology"].assign(**found)}, "described", "x")
+    words, before = said(figure), said(drawn[0])
+    for cause in ("filter", "rounding", "chaos"):
+        assert f"follows {cause}" in words and f"follows {cause}" not in before
+    stable = len(SIZES["crosshatch"]) + len(SIZES["polygon"]) - 1
+    texts = [text.get_text() for text in figure.findobj(Text)]
+    assert (texts.count("fr"), texts.count("c")) == (stable, stable)
+    assert "follows mesh" not in words
+    assert_legible(figure)
 
 
 def test_no_text_overlaps_and_none_is_too_small(drawn):

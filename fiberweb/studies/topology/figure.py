@@ -28,7 +28,7 @@ TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resol
 CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
 DRIVEN = r"$\updownarrow$"
 TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
-# what a certificate found a capacity to follow, beside its mark
+# what a certificate found a capacity to follow, at the foot of its axes
 FOLLOWS = {"filter": "f", "rounding": "r", "mesh": "m", "step": "t", "shear": "s", "chaos": "c"}
 # caps wider than the markers, or small bars would not show
 TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick": 0.7}
@@ -63,6 +63,8 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
             runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
             _capacities(row, runs, points, baselines, colour)
         panels.key_beside_title(rows[1], _marks(table))
+        if followed := _followed_marks(table):
+            panels.key_beside_title(rows[0], followed)
         if traces is not None:
             title = f"Example computations{_network_name(traces)} ({setup} setup)"
             style.letter(rows[-1], next(letters), title)
@@ -161,13 +163,18 @@ def _marks(table: pd.DataFrame) -> dict[str, Line2D]:
         "test ± standard error": Line2D([], [], color=style.INK, marker="o", ms=3, lw=0),
         "training": Line2D([], [], **TRAINING),
     }
+    return handles | panels.baseline_and_unstable((table["status"] == "unstable").any())
+
+
+def _followed_marks(table: pd.DataFrame) -> dict[str, Line2D]:
+    """Legend entries of what certificates found, if there are any."""
     found = "".join(_followed(row, name) for row in table.itertuples() for name in plots.TOTALS)
-    handles |= {
-        f"follows {cause}": Line2D([], [], color=style.INK, marker=f"${mark}$", ms=3, mew=0.2, lw=0)
+    look = {"color": style.INK, "ms": 4, "mew": 0.2, "ls": ""}
+    return {
+        f"follows {cause}": Line2D([], [], marker=rf"$\mathrm{{{mark}}}$", **look)
         for cause, mark in FOLLOWS.items()
         if mark in found
     }
-    return handles | panels.baseline_and_unstable((table["status"] == "unstable").any())
 
 
 def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
@@ -181,10 +188,8 @@ def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
             run.n, getattr(run, name), yerr=getattr(run, f"{name}_se"), color=colour[run.n],
             ecolor=style.INK, zorder=3, **TEST,
         )  # fmt: skip
-        ax.annotate(
-            _followed(run, name), (run.n, getattr(run, name)), (0, 4.5), fontsize="x-small",
-            textcoords="offset points", ha="center", gid="follows",
-        )  # fmt: skip
+        foot = run.n, 0.01
+        ax.text(*foot, _followed(run, name), transform=ax.get_xaxis_transform(), ha="center")
     style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
     ax.margins(x=0.08)
 
