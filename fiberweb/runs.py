@@ -21,7 +21,7 @@ from fiberweb.model.scene import Scene
 from fiberweb.scoring.limits import check_frames
 from fiberweb.simulation.plan import request
 
-DIGITS = 12  # of the hash in a name; with six, seeds 4697 and 4705 of one scene shared it
+DIGITS = 12  # of the hash in a name; six were shared by seeds among some ten thousand
 # what a scene may have in place of its own without another limit of the step
 AT_ANY = {"force": 1.0, "seed": 0, "duration": 1.0, "disturbance": 0.0, "centre_lines": False}
 
@@ -35,7 +35,7 @@ class Run:
         numerics: keyword arguments of `fiberweb.simulate` beside the scene.
         scoring: keyword arguments of `fiberweb.score` beside the response.
         choice: where the study took the force from; see `fiberweb.studies.base.Point`.
-        name: what it is, and a hash of scene and numerics.
+        name: what it is, and a hash of what tells scene and numerics from others.
     """
 
     scene: Scene
@@ -52,6 +52,7 @@ class Run:
     def name(self) -> str:
         """For instance crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-3fa9c15d20b7, SI prefixes."""
         network = self.scene.network
+        told_by = json.dumps([self.scene.distinct(), self.numerics], sort_keys=True)
         parts = [
             network.topology,
             f"n{network.n:02d}",
@@ -59,7 +60,7 @@ class Run:
             f"f{1e3 * self.scene.force:.1f}mN",
             f"t{1e3 * self.scene.tension:.1f}mN",
             "" if self.scene.setup == "described" else self.scene.setup,
-            hashlib.sha256(self.request.encode()).hexdigest()[:DIGITS],
+            hashlib.sha256(told_by.encode()).hexdigest()[:DIGITS],
         ]
         return "-".join(filter(None, parts))
 
@@ -88,12 +89,13 @@ class Run:
         """
         scene = self.scene
         kind = (
-            scene.setup, scene.network.topology, scene.ends, scene.filter_order, scene.tension,
+            scene.setup, scene.network.topology, scene.ends, scene.layout, scene.filter_order,
+            scene.tension,
             math.isinf(scene.crossing_stiffness), json.dumps(self.numerics),
         )  # fmt: skip
         if "time_step" in self.numerics and scene.setup != "published":
             return (*kind, replace(scene, **AT_ANY).to_json())
-        if scene.setup == "published" or scene.filter_order:
+        if scene.layout == "authors" or scene.setup == "published" or scene.filter_order:
             return (*kind, scene.network.n, scene.network.length)
         return kind
 

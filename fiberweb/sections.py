@@ -92,6 +92,12 @@ class SetupSection(Section):
         NETWORK,
     )
 
+    layout: Literal["exact", "authors"] | None = key(
+        None,
+        "exact: fibres evenly apart, pushed in one point; authors, of a crosshatch: crossings on "
+        "nodes of their mesh, and the force spread over five of them",
+    )
+
 
 class SetupsSection(Section):
     """The setups: the paper's text, the authors' code, and crossings that give."""

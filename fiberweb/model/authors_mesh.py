@@ -14,19 +14,35 @@ from fiberweb.model.network import Network
 from fiberweb.model.scene import Scene
 
 
-def cut_crosshatch(scene: Scene) -> list[Line]:
+def elements(network: Network) -> int:
+    """Of each fibre of a crosshatch."""
+    if network.spacing > 0.03 + 1e-9:
+        return max(LEAST_ELEMENTS, round(network.length / ELEMENT))
+    return round(network.length / (ELEMENT / 2))
+
+
+def parts(network: Network, elements_per_section: int | None) -> int:
+    """In how many each of their elements is cut, so that a section has so many, about; at least 1,
+    since crossings are on their nodes. None: 1."""
+    theirs = elements(network) * network.spacing / network.length
+    return max(1, round((elements_per_section or theirs) / theirs))
+
+
+def cut_crosshatch(network: Network, split: int = 1) -> list[Line]:
     """Equal elements, crossings on the node below their place, and the fibres laid through those
-    nodes."""
-    network = scene.network
-    coarse = network.spacing > 0.03 + 1e-9
-    count = round(network.length / (ELEMENT if coarse else ELEMENT / 2))
-    count = max(LEAST_ELEMENTS, count) if coarse else count
-    along = np.linspace(0.0, network.length, count + 1)
+    nodes.
+
+    split: see `parts`.
+    """
+    count = elements(network)
+    theirs = np.linspace(0.0, network.length, count + 1)
     grid = np.linspace(0, count + 1, network.n + 2)
-    nodes = tuple(grid[1:-1].astype(int).tolist())
-    middles = along[(0.5 * (grid[1:] + grid[:-1])).astype(int)]
+    crossings = grid[1:-1].astype(int)
+    middles = theirs[(0.5 * (grid[1:] + grid[:-1])).astype(int)]
+    along = np.linspace(0.0, network.length, split * count + 1)
+    nodes = tuple((split * crossings).tolist())
     lines = []
-    for across in along[list(nodes)]:
+    for across in theirs[crossings]:
         lines.append(
             Line(np.column_stack([along, np.full_like(along, across)]), along, nodes, middles)
         )
@@ -34,14 +50,15 @@ def cut_crosshatch(scene: Scene) -> list[Line]:
 
 
 def load_crosshatch(scene: Scene, first: np.ndarray) -> np.ndarray:
-    """Force on every node for u = 1, shape (nodes, 2), N: downwards, on nodes about the middle of
-    the driven fibre, which is the first one for N = 2."""
+    """Force on every node for u = 1, shape (nodes, 2), N: downwards, on their nodes about the
+    middle of the driven fibre, which is the first one for N = 2."""
     network = scene.network
     fibre = 0 if network.n == 2 else network.driven_fibre
-    middle = first[fibre] + (first[fibre + 1] - first[fibre] - 1) // 2
+    count = elements(network)
+    split = (first[fibre + 1] - first[fibre] - 1) // count
     load = np.zeros((first[-1], 2))
     for offset, share in LOAD.items():
-        load[middle + offset, 1] -= share * scene.force
+        load[first[fibre] + split * (count // 2 + offset), 1] -= share * scene.force
     return load
 
 

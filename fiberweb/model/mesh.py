@@ -96,8 +96,9 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     Args:
         scene: to be meshed.
         elements_per_section: elements on a section as long as the network's spacing; other
-            sections get proportionally many. None: the authors' mesh, 10 mm and at least 50
-            elements per fibre.
+            sections get proportionally many; in the authors' layout not less than on their mesh,
+            whose nodes the crossings are. None: the authors' mesh, 10 mm and, of a crosshatch
+            in their layout, at least 50 elements per fibre.
 
     Raises:
         ValueError: elements_per_section below 1.
@@ -105,10 +106,11 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     if elements_per_section is not None:
         elements_per_section = whole("elements_per_section", elements_per_section, 1)
     network = scene.network
-    if elements_per_section is not None:
+    if scene.layout == "authors":
+        parts = authors_mesh.parts(network, elements_per_section)
+        lines = authors_mesh.cut_crosshatch(network, parts)
+    elif elements_per_section is not None:
         lines = cut(scene, network.spacing / elements_per_section)
-    elif network.topology == "crosshatch":
-        lines = authors_mesh.cut_crosshatch(scene)
     else:
         lines = cut(scene, ELEMENT)
     position = np.concatenate([line.points for line in lines])
@@ -192,7 +194,7 @@ def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
 def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
     """Force on every node for u = 1: lateral, on the driven fibre."""
     network = scene.network
-    if scene.setup == "published" and network.topology == "crosshatch":
+    if scene.layout == "authors":
         return authors_mesh.load_crosshatch(scene, first)
     load = np.zeros((first[-1], 2))
     fibre = network.driven_fibre

@@ -26,11 +26,13 @@ Seed = Annotated[int, Field(ge=0, le=2**32 - 1, strict=True)]  # what numpy's ge
 # `published`: the authors' code.
 NO_NUMERICS = dict(filter_order=0, dead_band=False)
 DESCRIBED = dict(
-    crossing_stiffness=math.inf, crossing_damping=0.0, damping=10.0, ends="sliding", **NO_NUMERICS
-)
+    crossing_stiffness=math.inf, crossing_damping=0.0, damping=10.0, ends="sliding",
+    layout="exact", **NO_NUMERICS
+)  # fmt: skip
 COMPLIANT = dict(
-    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, ends="clamped", **NO_NUMERICS
-)
+    crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, ends="clamped",
+    layout="exact", **NO_NUMERICS
+)  # fmt: skip
 SETUPS = {
     "described": dict.fromkeys(authors.PHYSICS, DESCRIBED),
     "published": authors.PHYSICS,
@@ -67,6 +69,9 @@ class Scene:
             elements below some 1e-5 rad (`fiberweb.engines.authors_rotations`).
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
+        layout: "exact": fibres evenly apart, pushed in one point; "authors" (of a crosshatch):
+            crossings on nodes of the authors' mesh, up to 10 mm from there, and the force spread
+            over five of these nodes (`fiberweb.model.authors_mesh`), at any accuracy.
         tension_ramp: time over which the tension grows from zero (s).
         disturbance: lateral displacement of the driven point at the start (m), for perturbed
             pairs of runs.
@@ -93,6 +98,7 @@ class Scene:
     filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
     dead_band: Annotated[bool, Field(strict=True)] | None = None
     ends: Literal["clamped", "sliding", "pinned"] | None = None
+    layout: Literal["exact", "authors"] | None = None
     tension_ramp: NotNegative = 0.25
     disturbance: NotNegative = 0.0
     centre_lines: Annotated[bool, Field(strict=True)] = False
@@ -112,6 +118,11 @@ class Scene:
         for name, value in SETUPS[self.setup][self.network.topology].items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
+        if self.layout == "authors" and self.network.topology != "crosshatch":
+            raise ValueError(
+                f"layout = 'authors' is that of a crosshatch; a {self.network.topology} has layout "
+                "= 'exact'"
+            )
         if self.force is None:
             object.__setattr__(self, "force", self._reference_force())
 
@@ -161,6 +172,15 @@ class Scene:
         """The whole scene as one line of JSON; `from_json` reads it back."""
         values = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "network"}
         return json.dumps({"network": self.network.spec()} | values)
+
+    def distinct(self) -> dict:
+        """What tells it from other scenes: network, setup, force, and every field with another
+        value than the setup's own. A field that is added later is not among them."""
+        own = {f.name: f.default for f in fields(self)}
+        own |= SETUPS[self.setup][self.network.topology] | {"setup": None, "force": None}
+        values = {name: getattr(self, name) for name in own if name != "network"}
+        changed = {name: value for name, value in values.items() if value != own[name]}
+        return {"network": self.network.spec()} | changed
 
     @classmethod
     def from_json(cls, text: str) -> Scene:

@@ -30,7 +30,6 @@ import xarray as xr
 from fiberweb.engines import accepts, load
 from fiberweb.engines.base import Numerics, fitted_step
 from fiberweb.model import drive
-from fiberweb.model.authors import ELEMENT
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.capacity import score
@@ -169,7 +168,8 @@ def variants(response: xr.Dataset) -> Iterator[Variant]:
 def _finer(mesh: Mesh, numerics: Numerics) -> Variant:
     """Twice as many elements. The authors' step is not limited by the mesh and stays."""
     scene = mesh.scene
-    per_section = numerics.elements_per_section or round(scene.network.spacing / ELEMENT)
+    per_section = numerics.elements_per_section
+    per_section = per_section or round(scene.network.spacing / mesh.edges(0)[0])
     finer = build(scene, 2 * per_section)
     step = numerics.time_step
     if scene.setup != "published":
@@ -206,7 +206,7 @@ def _within_budget(variant: Variant, mesh: Mesh, numerics: Numerics) -> Variant:
 def _drive_and_material(scene: Scene) -> dict:
     """What a setup does not decide."""
     names = ("force", "tension", "duration", "seed", "sample_rate", "drive_rate", "diameter",
-             "youngs_modulus", "density", "tension_ramp")  # fmt: skip
+             "youngs_modulus", "density", "layout", "tension_ramp")  # fmt: skip
     return {name: getattr(scene, name) for name in names}
 
 

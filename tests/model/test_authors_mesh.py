@@ -61,6 +61,28 @@ def test_authors_load(n, fibre):
     assert not mesh.load[:, 0].any()
 
 
+@pytest.mark.parametrize(
+    ("n", "per_section", "split"), [(12, 4, 1), (12, 8, 2), (4, 4, 1), (2, 34, 2)]
+)
+def test_the_authors_layout_on_finer_meshes(n, per_section, split):
+    """The same places and forces in any setup; elements cut in so many."""
+    network = crosshatch(n, length=0.5)
+    theirs = build(Scene(network, "published"))
+    ours = build(Scene(network, layout="authors", force=0.05), per_section)
+    np.testing.assert_allclose(ours.edges(0), 0.01 / split)
+    np.testing.assert_allclose(rest(ours), rest(theirs), atol=1e-12)
+    at = [np.flatnonzero(mesh.load.any(axis=1)) for mesh in (ours, theirs)]
+    places = [mesh.position[nodes] for mesh, nodes in zip((ours, theirs), at)]
+    np.testing.assert_allclose(*places, atol=1e-12)
+    forces = [mesh.load[nodes, 1] / mesh.scene.force for mesh, nodes in zip((ours, theirs), at)]
+    np.testing.assert_allclose(*forces)
+
+
+def test_a_polygon_has_no_authors_layout():
+    with pytest.raises(ValueError, match="layout = 'authors' is that of a crosshatch"):
+        Scene(polygon(6), layout="authors")
+
+
 def test_authors_polygon():
     """Ends joined at the vertices; a hundredth of the stiffness between diagonals, one pair of
     which stays free; diameters alone are pulled."""

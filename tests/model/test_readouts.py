@@ -14,7 +14,7 @@ from fiberweb.model.scene import Scene
 )
 @pytest.mark.parametrize(("setup", "elements"), [("described", 4), ("published", 3)])
 def test_a_mesh_reads_the_places_of_its_network(network, setup, elements):
-    mesh = build(Scene(network, setup), elements)
+    mesh = build(Scene(network, setup, layout="exact"), elements)
     expected = places(network)
     assert [readout[:3] for readout in mesh.readouts] == [place[:3] for place in expected]
     lie = [np.dot(r.weights, mesh.position[list(r.nodes)]) for r in mesh.readouts]

@@ -129,3 +129,15 @@ def test_a_scene_needs_a_network():
 def test_every_field_is_documented():
     for field in fields(Scene):
         assert f"\n        {field.name}: " in Scene.__doc__
+
+
+def test_what_tells_a_scene_from_others_is_what_is_not_the_setups_own():
+    network = crosshatch(2, length=0.5)
+    assert Scene(network, force=0.1).distinct() == {
+        "network": network.spec(), "setup": "described", "force": 0.1
+    }  # fmt: skip
+    spelt_out = Scene(network, force=0.1, damping=10.0, ends="sliding", seed=1234)
+    assert spelt_out.distinct() == Scene(network, force=0.1).distinct()
+    other = Scene(network, "published", damping=1.0, seed=5).distinct()
+    assert (other["setup"], other["damping"], other["seed"]) == ("published", 1.0, 5)
+    assert "filter_order" not in other

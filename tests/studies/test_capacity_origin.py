@@ -74,7 +74,11 @@ def origin_table():
         scene = each.scene
         row = {"setup": scene.setup, "n": scene.network.n, "spacing_m": scene.network.spacing}
         row |= {"force_N": scene.force, "force_choice": each.choice}
-        row |= {"filter_order": scene.filter_order, "dead_band": int(scene.dead_band)}
+        row |= {
+            "layout": scene.layout,
+            "filter_order": scene.filter_order,
+            "dead_band": int(scene.dead_band),
+        }
         row |= {"elements_per_section": 10, "time_step_s": 5e-6} | {
             {"time_step": "time_step_s"}.get(key, key): value
             for key, value in each.numerics.items()
@@ -93,9 +97,10 @@ def test_the_runs_of_the_papers_config():
     table = runs(Config(), "capacity_origin", "published")
     counted = Counter(run.choice for run in table)
     points = len(LISTED_AT_500MM), len(list(LISTED_AT_100MM)[::3])
-    assert counted == {"eq3": 5 * points[0], "grid": 5 * points[1], "mesh": 2 * 4}
+    assert counted == {"eq3": 6 * points[0], "grid": 6 * points[1], "mesh": 2 * 4}
     described = [run.scene for run in table if run.scene.setup == "described"]
-    assert len(described) == sum(points)
+    layouts = Counter(scene.layout for scene in described)
+    assert layouts == {"authors": sum(points), "exact": sum(points)}
     assert all(scene.damping == 10.0 and np.isinf(scene.crossing_stiffness) for scene in described)
     (one,) = watched(table, Config().capacity_origin)
     assert (one.scene.network.n, one.scene.dead_band, one.scene.filter_order) == (4, True, 6)

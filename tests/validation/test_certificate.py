@@ -70,7 +70,8 @@ def test_each_change_is_the_run_it_says(published):
     no_filter, exact = replace(scene, filter_order=0), replace(scene, dead_band=False)
     for words, alone in (("without the filter", no_filter), ("exact rotations", exact)):
         assert after[words, "c_m"] == pytest.approx(float(score(simulate(alone)).c_m), abs=1e-9)
-    described = Scene(scene.network, force=scene.force, duration=scene.duration)
+    physics = dict(force=scene.force, duration=scene.duration, layout="authors")
+    described = Scene(scene.network, **physics)
     expected = float(score(simulate(described), "published").c_nl)
     assert after["described setup", "c_nl"] == pytest.approx(expected, abs=1e-9)
 

@@ -53,7 +53,8 @@ SETUPS = ("published",)
 
 def points(section: CapacityOriginSection, lab: Lab) -> Iterator[Point]:
     """Both artefacts on and off over size and over force, and the same scenes in the described
-    setup; then each artefact alone on several meshes and at several steps."""
+    setup, in the authors' layout and in the text's; then each artefact alone on several meshes and
+    at several steps."""
     for n in section.n:
         yield from _variants(lab, n, section.length, None)
     for force in section.force:
@@ -64,7 +65,7 @@ def points(section: CapacityOriginSection, lab: Lab) -> Iterator[Point]:
     for artefact, (element, step) in product((FILTER_ALONE, BAND_ALONE), meshes):
         per_section = max(1, round(network.spacing / element))
         numerics = {"elements_per_section": per_section, "time_step": step}
-        yield Point(lab.scene(network, **artefact), "mesh", numerics)
+        yield Point(lab.scene(network, layout="exact", **artefact), "mesh", numerics)
 
 
 def _variants(lab: Lab, n: int, length: float, force: float | None) -> Iterator[Point]:
@@ -72,8 +73,10 @@ def _variants(lab: Lab, n: int, length: float, force: float | None) -> Iterator[
     for artefacts in (BOTH, FILTER_ALONE, BAND_ALONE, NEITHER):
         scene = lab.scene(network, force=force, **artefacts)
         yield Point(scene, choice)
-    # what the setup leaves at None is the described one's own there
-    yield Point(Scene(network, **lab.defaults, force=scene.force), choice)
+    for layout in ("authors", "exact"):
+        # what the setup leaves at None is the described one's own there
+        physics = lab.defaults | {"layout": layout, "force": scene.force}
+        yield Point(Scene(network, **physics), choice)
 
 
 def watched(runs, section) -> list:

@@ -23,7 +23,14 @@ VARIANTS = {
     (True, False): ("filter alone", {"color": FILTER, "marker": "^"}),
     (True, True): ("both", {"color": BOTH, "marker": "o"}),
 }
-CONVERGED = ("converged, neither", {"color": style.INK, "marker": "D", "mfc": "white", "mew": 0.7})
+# the described setup, by layout
+CONVERGED = {
+    "authors": ("neither, converged", {"color": style.INK, "marker": "D", "mfc": "white"}),
+    "exact": (
+        "the text's network, converged",
+        {"color": style.GREY, "marker": "o", "mfc": "white"},
+    ),
+}
 AUTHORS = {"color": style.INK, "marker": "x", "ms": 5, "mew": 1.0, "ls": "", "zorder": 6}
 MARK = {"ms": 3.0, "lw": 0.8, "elinewidth": 0.6}
 AXIS = (-0.03, 1.03)
@@ -75,7 +82,9 @@ def _variant(rows: pd.DataFrame, filtered: bool, banded: bool) -> pd.DataFrame:
 def _totals(part: SubFigure, rows, x: str, listed: dict, baselines: pd.DataFrame) -> None:
     """C_nl and C_m over a column x: each variant, the converged answer and the authors' own."""
     series = [(_variant(rows, *which), look) for which, (_, look) in VARIANTS.items()]
-    series.append((rows[rows["setup"] == "described"], CONVERGED[1]))
+    described = rows[rows["setup"] == "described"]
+    for layout, (_, look) in CONVERGED.items():
+        series.append((described[described["layout"] == layout], look | {"mew": 0.7}))
     for column, (ax, name) in enumerate(zip(part.subplots(1, 2), plots.TOTALS, strict=True)):
         for frame, look in series:
             stable = frame[frame["status"] == "ok"].sort_values(x)
@@ -103,7 +112,7 @@ def _mm(rows: pd.DataFrame) -> float:
 
 def _key(part: SubFigure, rows: pd.DataFrame) -> None:
     handles = {label: Line2D([], [], **MARK_ONLY | look) for label, look in VARIANTS.values()}
-    handles |= {CONVERGED[0]: Line2D([], [], **MARK_ONLY | CONVERGED[1])}
+    handles |= {label: Line2D([], [], **MARK_ONLY | look) for label, look in CONVERGED.values()}
     handles |= {"the authors' tables": Line2D([], [], **AUTHORS)}
     handles |= panels.baseline_and_unstable((rows["status"] == "unstable").any())
     panels.key(part, handles, ncols=4)

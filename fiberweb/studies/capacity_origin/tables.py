@@ -14,7 +14,7 @@ from fiberweb.simulation import dataset
 def table(
     response_paths: Iterable[str | Path], choices: Sequence[str], alpha: float
 ) -> pd.DataFrame:
-    """One row a run: `tables.COLUMNS`, force_choice, filter_order, dead_band and
+    """One row a run: `tables.COLUMNS`, force_choice, layout, filter_order, dead_band and
     `tables.NUMERICS`.
 
     Args:
@@ -26,6 +26,7 @@ def table(
     frames = [
         tables.rows(
             [_scored(path, alpha)], force_choice=choice,
+            layout=lambda scene, _: scene.layout,
             filter_order=_of_scene("filter_order"), dead_band=_of_scene("dead_band"),
             **tables.NUMERICS,
         )
