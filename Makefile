@@ -16,7 +16,7 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs bench env clean
+.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs certificates bench env clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
@@ -48,6 +48,9 @@ test: $(STAMP) ## the tests
 
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
+
+certificates: $(STAMP) ## whom certificates accuse: 236 scenes, over an hour
+	$(VENV)/bin/python -m fiberweb.tools.certificates
 
 bench: $(STAMP) ## what a run and a job cost on this machine
 	$(VENV)/bin/python -m fiberweb.tools.bench

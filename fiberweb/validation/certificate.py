@@ -14,7 +14,8 @@ the code and not of the web. What is changed, and the verdict if a capacity foll
 
 If nothing does, it is "physics": of the model, and of one input. Steps and meshes are compared on
 the first part of the recording, both runs scored on the same part, so that all of it costs less
-than six times what the run did.
+than six times what the run did. The less a readout is trained on, the more it makes of a small
+difference: what is found on a part counts as so much less.
 """
 
 from __future__ import annotations
@@ -87,7 +88,8 @@ def certificate(response: xr.Dataset, **scoring) -> pd.DataFrame:
         A row for each change and capacity: capacity ("c_nl" or "c_m"), changed, share of the
         recording, cost (in element-steps of the run, weighed by engine), before and after (NaN of
         an unstable run), change, and verdict on the capacity, the same in all of its rows:
-        "physics", or what it follows by more than `TOLERANCE`, joined by " and ".
+        "physics", or what it follows, change times share, by more than `TOLERANCE`, joined by
+        " and ".
     """
     before = {}
     records = []
@@ -109,14 +111,15 @@ def certificate(response: xr.Dataset, **scoring) -> pd.DataFrame:
     table = pd.DataFrame(records, columns=list(COLUMNS))
     for name in CAPACITIES:
         rows = table["capacity"] == name
-        found = table.loc[rows, "verdict"], table.loc[rows, "change"]
+        found = table.loc[rows, "verdict"], table.loc[rows, "change"] * table.loc[rows, "share"]
         stable = response.attrs["status"] == "ok"
         table.loc[rows, "verdict"] = verdict(dict(zip(*found))) if stable else "unstable"
     return table
 
 
 def verdict(changes: dict[str, float]) -> str:
-    """What a capacity is, by its change (NaN: that run was unstable) for each cause.
+    """What a capacity is, by its change on the whole recording (NaN: that run was unstable) for
+    each cause.
 
     Where a filter or rounding makes a capacity, it follows mesh and step through them.
     """
