@@ -55,8 +55,12 @@ def main() -> None:
         for elements in meshes(scene):
             compare(scene, engine, elements)
     print("\nkernels, ns an element and step (elements):")
-    for setup in ("described", "published"):
-        print(f"  {setup:<10}" + "".join(f"{kernel(setup, n):>16}" for n in SIZES))
+    for label, setup, changes in (
+        ("described", "described", {}),
+        ("published", "published", {}),
+        ("no band", "published", {"dead_band": False}),
+    ):
+        print(f"  {label:<10}" + "".join(f"{kernel(n, setup, **changes):>16}" for n in SIZES))
     print()
     for scoring in ("clean", "published"):
         seconds, memory = scored(scoring)
@@ -139,9 +143,9 @@ def _row(scene, engine, mesh, steps, per_step, error, ratio) -> None:
     )
 
 
-def kernel(setup: str, n: int) -> str:
+def kernel(n: int, setup: str, **changes) -> str:
     """ns an element and step of a whole run with the setup's own engine and mesh, median."""
-    scene = Scene(crosshatch(n, length=0.5), setup, duration=2 * NEW_SECONDS / n)
+    scene = Scene(crosshatch(n, length=0.5), setup, duration=2 * NEW_SECONDS / n, **changes)
     numerics = plan(scene).numerics
     mesh, engine = build(scene, numerics.elements_per_section), engines.load(numerics.engine)
     engine.integrate(mesh, numerics)
