@@ -94,8 +94,8 @@ class SetupSection(Section):
 
     layout: Literal["exact", "authors"] | None = key(
         None,
-        "exact: fibres evenly apart, pushed in one point; authors, of a crosshatch: crossings on "
-        "nodes of their mesh, and the force spread over five of them",
+        "exact: crossings where the text has them, and a force in one point; authors: both on "
+        "nodes of their 10 mm elements, at any accuracy",
     )
 
 

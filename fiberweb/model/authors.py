@@ -43,7 +43,9 @@ PHYSICS = {
     "crosshatch": dict(
         crossing_stiffness=1e6, filter_order=6, ends="sliding", layout="authors", **_BOTH
     ),
-    "polygon": dict(crossing_stiffness=1e3, filter_order=0, ends="pinned", layout="exact", **_BOTH),
+    "polygon": dict(
+        crossing_stiffness=1e3, filter_order=0, ends="pinned", layout="authors", **_BOTH
+    ),
 }
 
 # Feature selection script, whose readouts near the springs were chosen by hand: for each row the

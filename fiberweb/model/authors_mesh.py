@@ -24,8 +24,16 @@ def elements(network: Network) -> int:
 def parts(network: Network, elements_per_section: int | None) -> int:
     """In how many each of their elements is cut, so that a section has so many, about; at least 1,
     since crossings are on their nodes. None: 1."""
-    theirs = elements(network) * network.spacing / network.length
+    theirs = network.spacing / ELEMENT
+    if network.topology == "crosshatch":
+        theirs = elements(network) * network.spacing / network.length
     return max(1, round((elements_per_section or theirs) / theirs))
+
+
+def cut(network: Network, split: int = 1) -> list[Line]:
+    """The fibres in their elements, or each of these in so many."""
+    each = cut_crosshatch if network.topology == "crosshatch" else cut_polygon
+    return each(network, split)
 
 
 def cut_crosshatch(network: Network, split: int = 1) -> list[Line]:
@@ -47,6 +55,39 @@ def cut_crosshatch(network: Network, split: int = 1) -> list[Line]:
             Line(np.column_stack([along, np.full_like(along, across)]), along, nodes, middles)
         )
     return lines + [line._replace(points=line.points[:, ::-1]) for line in lines]
+
+
+def cut_polygon(network: Network, split: int = 1) -> list[Line]:
+    """Elements of about 10 mm; crossings and midpoints on the node before their place, the fibres
+    where they belong, so that what is tied is some millimetres apart.
+
+    split: see `parts`.
+    """
+    lines = []
+    for fibre, (near, far) in enumerate(network.fibres):
+        ends = network.sections(fibre)
+        count = round(ends[-1] / ELEMENT)
+        theirs = np.linspace(0.0, ends[-1], count + 1)
+        along = np.linspace(0.0, ends[-1], split * count + 1)
+        before = np.floor(count * ends[1:-1] / ends[-1] + 1e-9).astype(int)
+        middles = np.floor(count * 0.5 * (ends[1:] + ends[:-1]) / ends[-1] + 1e-9).astype(int)
+        points = near + along[:, None] * (far - near) / ends[-1]
+        lines.append(Line(points, along, tuple((split * before).tolist()), theirs[middles]))
+    return lines
+
+
+def load_polygon(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
+    """The same of a polygon: on the node halfway between those of the centre and of the next
+    crossing of the first diameter."""
+    network = scene.network
+    fibre, line = network.driven_fibre, lines[network.driven_fibre]
+    split = (len(line.points) - 1) // round(line.along[-1] / ELEMENT)
+    beyond = sorted(node // split for node in line.crossing_nodes)
+    centre = round(line.along[-1] / ELEMENT) // 2
+    following = min(node for node in beyond if node > centre)
+    load = np.zeros((first[-1], 2))
+    load[first[fibre] + split * ((centre + following) // 2), 1] = scene.force
+    return load
 
 
 def load_crosshatch(scene: Scene, first: np.ndarray) -> np.ndarray:
@@ -73,13 +114,16 @@ def vertices(network: Network, first: np.ndarray) -> list[list[tuple[int, int]]]
     return list(groups.values())
 
 
-def crossing_share(network: Network, a: int, b: int) -> float:
-    """Stiffness where two fibres of a polygon cross, relative to others: a hundredth between two
-    diagonals, and none between the last diagonal and the first."""
+def crossing_share(network: Network, a: int, b: int, at_end: bool) -> float:
+    """Stiffness where two fibres of a polygon cross, a before b, relative to others: diameters are
+    tied in a chain at the centre, diagonals to one another by a hundredth and not at vertices, and
+    the first two of them not at all."""
     diameters = network.n // 2
-    if a < diameters or b < diameters:
+    if b < diameters:
+        return float(b == a + 1)
+    if a < diameters:
         return 1.0
-    return 0.0 if {a, b} == {diameters, diameters + network.n - 1} else 0.01
+    return 0.0 if at_end or (a, b) == (diameters, diameters + 1) else 0.01
 
 
 def pulled(network: Network) -> range:

@@ -108,7 +108,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     network = scene.network
     if scene.layout == "authors":
         parts = authors_mesh.parts(network, elements_per_section)
-        lines = authors_mesh.cut_crosshatch(network, parts)
+        lines = authors_mesh.cut(network, parts)
     elif elements_per_section is not None:
         lines = cut(scene, network.spacing / elements_per_section)
     else:
@@ -144,7 +144,7 @@ def _joints(scene: Scene, lines: list[Line], first: np.ndarray):
     for fibre, stations in enumerate(network.stations):
         for (crossing, _), node in zip(stations, lines[fibre].crossing_nodes):
             members[crossing].append((fibre, first[fibre] + node))
-    authors_polygon = scene.setup == "published" and network.topology == "polygon"
+    authors_polygon = scene.layout == "authors" and network.topology == "polygon"
     if authors_polygon:
         members += authors_mesh.vertices(network, first)
     pairs, scale = [], []
@@ -152,8 +152,8 @@ def _joints(scene: Scene, lines: list[Line], first: np.ndarray):
         for (fibre_a, a), (fibre_b, b) in combinations(group, 2):
             at_end = a in first[:-1] or a + 1 in first[1:]
             factor = 1.0
-            if authors_polygon and not at_end:
-                factor = authors_mesh.crossing_share(network, fibre_a, fibre_b)
+            if authors_polygon:
+                factor = authors_mesh.crossing_share(network, fibre_a, fibre_b, at_end)
             if factor:
                 pairs.append((a, b))
                 scale.append(factor)
@@ -194,8 +194,10 @@ def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
 def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
     """Force on every node for u = 1: lateral, on the driven fibre."""
     network = scene.network
-    if scene.layout == "authors":
+    if scene.layout == "authors" and network.topology == "crosshatch":
         return authors_mesh.load_crosshatch(scene, first)
+    if scene.layout == "authors":
+        return authors_mesh.load_polygon(scene, lines, first)
     load = np.zeros((first[-1], 2))
     fibre = network.driven_fibre
     nodes, weights = nodes_about(lines[fibre].along, network.driven_distance)

@@ -69,9 +69,9 @@ class Scene:
             elements below some 1e-5 rad (`fiberweb.engines.authors_rotations`).
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end.
-        layout: "exact": fibres evenly apart, pushed in one point; "authors" (of a crosshatch):
-            crossings on nodes of the authors' mesh, up to 10 mm from there, and the force spread
-            over five of these nodes (`fiberweb.model.authors_mesh`), at any accuracy.
+        layout: "exact": fibres cross where the network says and are pushed in one point;
+            "authors": what is tied, read and pushed are nodes of the authors' 10 mm elements, five
+            of them pushed in a crosshatch (`fiberweb.model.authors_mesh`); at any accuracy.
         tension_ramp: time over which the tension grows from zero (s).
         disturbance: lateral displacement of the driven point at the start (m), for perturbed
             pairs of runs.
@@ -118,10 +118,11 @@ class Scene:
         for name, value in SETUPS[self.setup][self.network.topology].items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
-        if self.layout == "authors" and self.network.topology != "crosshatch":
+        gaps = self.layout == "authors" and self.network.topology == "polygon"
+        if gaps and math.isinf(self.crossing_stiffness):
             raise ValueError(
-                f"layout = 'authors' is that of a crosshatch; a {self.network.topology} has layout "
-                "= 'exact'"
+                "layout = 'authors' of a polygon starts with gaps at its crossings, which take "
+                "springs: give crossing_stiffness a finite value, or take layout = 'exact'"
             )
         if self.force is None:
             object.__setattr__(self, "force", self._reference_force())

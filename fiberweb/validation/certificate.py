@@ -164,7 +164,9 @@ def variants(response: xr.Dataset) -> Iterator[Variant]:
     if engine.PLANAR and not engine.MODELS_SHEAR:
         yield from _stouter(mesh, numerics)
     if scene.setup == "published":
-        physics = plan(Scene(scene.network, **_drive_and_material(scene)), "standard")
+        layout = scene.layout if scene.network.topology == "crosshatch" else "exact"
+        physics = Scene(scene.network, layout=layout, **_drive_and_material(scene))
+        physics = plan(physics, "standard")
         yield Variant("described setup", "", physics.mesh, physics.numerics)
 
 
@@ -209,7 +211,7 @@ def _within_budget(variant: Variant, mesh: Mesh, numerics: Numerics) -> Variant:
 def _drive_and_material(scene: Scene) -> dict:
     """What a setup does not decide."""
     names = ("force", "tension", "duration", "seed", "sample_rate", "drive_rate", "diameter",
-             "youngs_modulus", "density", "layout", "tension_ramp")  # fmt: skip
+             "youngs_modulus", "density", "tension_ramp")  # fmt: skip
     return {name: getattr(scene, name) for name in names}
 
 

@@ -78,23 +78,39 @@ def test_the_authors_layout_on_finer_meshes(n, per_section, split):
     np.testing.assert_allclose(*forces)
 
 
-def test_a_polygon_has_no_authors_layout():
-    with pytest.raises(ValueError, match="layout = 'authors' is that of a crosshatch"):
+def test_a_polygon_of_theirs_needs_springs():
+    with pytest.raises(ValueError, match="layout = 'authors' of a polygon starts with gaps"):
         Scene(polygon(6), layout="authors")
 
 
 def test_authors_polygon():
-    """Ends joined at the vertices; a hundredth of the stiffness between diagonals, one pair of
-    which stays free; diameters alone are pulled."""
+    """Crossings on the nodes before them, so that joints start with gaps; a hundredth of the
+    stiffness between diagonals, the first two of which stay free; a chain at the centre; no joints
+    of diagonals at vertices; diameters alone are pulled, the first one pushed in one node."""
     network = polygon(6, diagonals="skip-one")
     mesh = build(Scene(network, setup="published"))
     fibre_of = np.repeat(np.arange(len(network.fibres)), np.diff(mesh.first))
     a, b = mesh.joints.T
     ends = np.isin(a, mesh.first[:-1]) | np.isin(a + 1, mesh.first[1:])
-    diagonals = (fibre_of[a] >= 3) & (fibre_of[b] >= 3) & ~ends
+    diagonals = (fibre_of[a] >= 3) & (fibre_of[b] >= 3)
     np.testing.assert_allclose(mesh.joint_stiffness[diagonals], 10.0)
     np.testing.assert_allclose(mesh.joint_stiffness[~diagonals], 1e3)
-    assert diagonals.sum() == 6 - 1  # neighbouring short diagonals cross in six points
-    assert ends.sum() == 6 * 3  # three fibres end at each vertex
-    pulled = np.unique(fibre_of[mesh.pull.any(axis=1)])
-    np.testing.assert_array_equal(pulled, [0, 1, 2])
+    assert diagonals.sum() == 6 - 1 and not ends[diagonals].any()  # six points, one left out
+    assert ends.sum() == 6 * 2  # at each vertex a diameter with two diagonals
+    chain = (fibre_of[a] < 3) & (fibre_of[b] < 3)
+    assert list(zip(fibre_of[a[chain]], fibre_of[b[chain]])) == [(0, 1), (1, 2)]
+    gap = np.linalg.norm(mesh.position[a] - mesh.position[b], axis=1)
+    assert gap.max() == pytest.approx(7.1e-3, abs=1e-4)  # as their script prints it
+    assert np.unique(fibre_of[mesh.pull.any(axis=1)]).tolist() == [0, 1, 2]
+    (pushed,) = np.flatnonzero(mesh.load.any(axis=1))
+    assert pushed == (25 + 37) // 2 and mesh.load[pushed, 1] == mesh.scene.force
+
+
+def test_the_authors_polygon_on_a_finer_mesh():
+    """The same places and forces, elements cut in two."""
+    network = polygon(8, diagonals="skip-one")
+    theirs, ours = (build(Scene(network, "published"), per_section) for per_section in (None, 36))
+    assert ours.elements == 2 * theirs.elements
+    np.testing.assert_allclose(rest(ours), rest(theirs), atol=1e-12)
+    for pair in zip(ours.joints.T, theirs.joints.T):
+        np.testing.assert_allclose(*(m.position[j] for m, j in zip((ours, theirs), pair)))

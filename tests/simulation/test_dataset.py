@@ -71,3 +71,24 @@ def test_the_same_response_gives_the_same_bytes(tmp_path):
     lines = dataset.load(tmp_path / "one.nc")["centre_line"]
     assert "2^-20" in lines.attrs["comment"]
     assert float(np.abs(lines - response["centre_line"]).max()) < 1e-9
+
+
+def test_a_damaged_file_is_refused_and_never_read_as_something_else(tmp_path):
+    response = simulate(Scene(crosshatch(2, length=0.5), duration=4.0), "draft")
+    dataset.save(response, tmp_path / "whole.nc")
+    content = (tmp_path / "whole.nc").read_bytes()
+    whole = dataset.load(tmp_path / "whole.nc")
+    refused = 0
+    for at in np.linspace(0, len(content), 24, endpoint=False).astype(int):
+        damaged = bytearray(content)
+        damaged[at : at + 32] = bytes(32)  # a block that never reached the disk
+        (tmp_path / "damaged.nc").write_bytes(damaged)
+        try:
+            read = dataset.load(tmp_path / "damaged.nc")
+        except ValueError as error:
+            assert "damaged.nc cannot be read" in str(error) and "\n" not in str(error)
+            refused += 1
+        else:
+            for name in ("input", "displacement", "time", "rest_x", "fibre"):
+                np.testing.assert_array_equal(read[name], whole[name])
+    assert refused >= 12

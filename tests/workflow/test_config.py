@@ -56,6 +56,15 @@ BAD = {
     "accuracy and step": (
         {"numerics": {"time_step": 1e-5}}, ["numerics.accuracy", "time_step", "null"],
     ),
+    "accuracy of nothing": (
+        {"accuracy": {"networks": []}}, ["accuracy.networks = []", "list at least one"],
+    ),
+    "accuracy of stubby fibres": (
+        {"accuracy": {"length": 0.01}}, ["accuracy.length = 0.01 m", "N = 4", "spacing"],
+    ),
+    "accuracy too short to score": (
+        {"accuracy": {"duration": 1.0}}, ["accuracy.duration", "1 s", "horizon of 1 s"],
+    ),
     "value for a section": ({"scene": 5}, ["scene", "5", "tension, duration"]),
     "word for a list": ({"topology": {"polygon": 6}}, ["topology.polygon", "6", "list"]),
     "no such ends": (
