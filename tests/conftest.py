@@ -11,6 +11,7 @@ def unsaved(monkeypatch):
     monkeypatch.setattr(style, "save", lambda figure, path: None)
 
 
+@pytest.hookimpl(tryfirst=True)  # pytest-xdist reads the groups in the same hook
 def pytest_collection_modifyitems(items):
     """For pytest-xdist: tests of a file run in one process, which makes what they share once; so do
     all of the copied tree, which come first because they take longest."""

@@ -23,7 +23,7 @@ def count(group, n):
 )
 def test_readouts_are_those_that_a_simulation_records(network, setup):
     points = groups.readouts(network)
-    mesh = build(Scene(network, setup), elements_per_section=4)
+    mesh = build(Scene(network, setup, layout="exact"), elements_per_section=4)
     assert list(points["kind"]) == [readout.kind for readout in mesh.readouts]
     assert list(points["fibre"]) == [readout.fibre for readout in mesh.readouts]
     assert list(points["section"]) == [readout.section for readout in mesh.readouts]
