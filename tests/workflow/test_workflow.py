@@ -240,6 +240,21 @@ def test_a_changed_point_is_simulated_alone(smoked, values, target, expected):
 
 
 @pytest.mark.slow
+def test_certificates_where_the_config_asks_for_them(smoked):
+    (smoked.folder / "certified.yaml").write_text(
+        "results: certified\ncertify: true\nscene: {duration: 5}\nnumerics: {accuracy: draft}\n"
+        "topology: {crosshatch: [2], polygon: []}\n"
+    )
+    asked = ("certified/tables/described/topology.csv", "--configfile", "certified.yaml")
+    assert smoked.jobs(*asked)["certificate"] == 1
+    (row,) = pd.read_csv(smoked.folder / asked[0]).itertuples()
+    (path,) = (smoked.folder / "certified" / "runs").glob("*/certificate.csv")
+    verdicts = pd.read_csv(path).groupby("capacity")["verdict"].first()
+    assert (row.c_nl_verdict, row.c_m_verdict) == (verdicts["c_nl"], verdicts["c_m"])
+    assert smoked.planned(*asked) == {}
+
+
+@pytest.mark.slow
 def test_an_unstable_run_is_a_result(smoked):
     (smoked.folder / "unstable.yaml").write_text(
         "results: blown\nscene: {duration: 4.0}\ntopology: {crosshatch: [2], polygon: []}\n"
