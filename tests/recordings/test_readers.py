@@ -205,7 +205,7 @@ def test_what_is_not_seen_at_the_ends_is_cut(tmp_path, made):
         (lambda p: p.__setitem__(np.s_[:, 2], p[:, 0]), "duplicated", "'a' and 'c' are the same"),
         (lambda p: p.__setitem__(np.s_[200:, 1, 0], p[200:, 1, 0] + 900), "jumps", "b.x jumps by"),
         (lambda p: np.add(p[:, 0, 1], np.linspace(0, 80, 400), out=p[:, 0, 1]), "drift", "a.y dri"),
-        (lambda p: np.minimum(p[:, 0, 0], 102.0, out=p[:, 0, 0]), "clipping", "a.x stays at its great"),
+        (lambda p: np.minimum(p[:, 0, 0], 102.0, out=p[:, 0, 0]), "clipping", "a.x stays at"),
     ],
     ids=["constant", "duplicated", "jump", "drift", "clipping"],
 )  # fmt: skip
