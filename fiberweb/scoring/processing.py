@@ -3,11 +3,10 @@
 Dambre et al. 2012, "Information processing capacity of dynamical systems", Sci. Rep. 2, 514: the
 capacities of a complete set of orthogonal functions of the input's past add up to no more than the
 number of linearly independent signals. The functions are products of Legendre polynomials of
-delayed inputs. These are orthogonal if the input is uniform and independent from sample to sample.
-Of another input they are made so on the training rows, one after the other by degree and delay,
-so that each counts for what those before it do not say (Kubota, Takahashi & Nakajima 2021, Phys.
-Rev. Research 3, 043135); that mixes each with the others by what q functions fit of T rows by
-chance, some q/T of its variance.
+delayed inputs, made orthogonal on the training rows one after the other, by degree and then by
+delay: each counts for what those before it do not say, whatever the input is (Kubota, Takahashi &
+Nakajima 2021, Phys. Rev. Research 3, 043135). That mixes each with what those before it fit by
+chance, so that up to q/T of a capacity is lost, of q functions on T rows.
 """
 
 from __future__ import annotations
@@ -26,12 +25,9 @@ from fiberweb.scoring.regression import estimated
 
 DEGREES = (1, 2, 3)
 MOST = 600  # functions ...
-ROWS_EACH = 8  # ... or one for so many training rows
+ROWS_EACH = 16  # ... or one for so many training rows
 ALIKE = 0.5  # correlation of the input with itself at which delays count as different
 NEW = 1e-2  # of a function's rms has to be new: a ten-thousandth of its variance
-# Legendre products count as orthogonal if no two are more alike than this, and all together no more
-# than a uniform, independent input makes them: a mean squared correlation of some 1/T.
-ALIKE_TWO, ALIKE_ALL = 0.25, 2.0
 SURROGATES = 99  # by chance, one in a hundred recordings of nothing has any capacity
 
 
@@ -90,10 +86,6 @@ def _orthogonal(values: np.ndarray, fitted: slice, numbers: np.ndarray):
     """Functions (T, q) made orthogonal on the training rows, and the numbers of those that say
     something new."""
     rows = fitted.stop - fitted.start
-    alike = values[fitted].T @ values[fitted] / rows
-    np.fill_diagonal(alike, 0.0)
-    if np.abs(alike).max() < ALIKE_TWO and (alike**2).mean() * rows < ALIKE_ALL:
-        return values, numbers
     corner = np.linalg.qr(values[fitted], mode="r")
     new = np.abs(np.diag(corner)) > NEW * np.sqrt(rows)
     values = np.ascontiguousarray(values[:, new])

@@ -11,7 +11,7 @@ HORIZON = 10  # frames
 
 @pytest.fixture(scope="module")
 def u():
-    return np.random.default_rng(8).uniform(-1.0, 1.0, 1200)
+    return np.random.default_rng(8).uniform(-1.0, 1.0, 3000)
 
 
 def taps(u, count):
@@ -27,7 +27,7 @@ def scored(u, x, alpha=0.01):
     return c, c > threshold, functions
 
 
-@pytest.mark.parametrize("count", [1, 3, 7])
+@pytest.mark.parametrize("count", [1, 5])
 def test_a_delay_line_has_one_of_each_tap_and_nothing_nonlinear(u, count):
     c, counted, functions = scored(u, taps(u, count))
     assert processing.total(c, counted) == pytest.approx(count, abs=1e-6)
@@ -39,14 +39,15 @@ def test_powers_have_one_of_each_degree(u):
     c, counted, functions = scored(u, np.stack([u, u**2, u**3], axis=1))
     for degree in (1, 2, 3):
         mine = counted & (functions.degree == degree)
-        assert processing.total(c, mine) == pytest.approx(1.0, abs=1e-6)
+        mixed = len(c) / 2242  # functions a training row, see the module
+        assert 1.0 - mixed < processing.total(c, mine) <= 1.0
     assert (functions.delay[counted] == 0).all()
 
 
 def test_of_a_product_of_two_inputs_only_their_product_is_found(u):
     c, counted, functions = scored(u, taps(u, 4)[:, [1]] * taps(u, 4)[:, [3]])
     assert functions.degree[counted].tolist() == [2] and functions.delay[counted].tolist() == [3]
-    assert c[counted][0] == pytest.approx(1.0, abs=1e-6)
+    assert 1.0 - len(c) / 2242 < c[counted][0] <= 1.0
 
 
 def test_noise_has_none_in_95_of_100_draws():
@@ -58,7 +59,7 @@ def test_noise_has_none_in_95_of_100_draws():
     assert nothing >= 95
 
 
-@pytest.mark.parametrize("nodes", [5, 20])
+@pytest.mark.parametrize("nodes", [4, 12])
 def test_an_echo_state_network_stays_under_its_rank_and_its_size(u, nodes):
     x = esn.states(u, nodes)
     c, counted, _ = scored(u, x, alpha=1e-6)
@@ -79,8 +80,8 @@ def test_functions_are_orthogonal_on_the_training_rows_alone(u):
 
 
 def test_a_binary_input_has_no_powers():
-    u = np.sign(np.random.default_rng(3).uniform(-1, 1, 1000))
-    fitted = slice(HORIZON, 700)
+    u = np.sign(np.random.default_rng(3).uniform(-1, 1, 2000))
+    fitted = slice(HORIZON, 1500)
     functions = processing.basis(u, fitted, 3)
     # products of different delays are all there is: 4 of degree 1, 6 of 2 and 4 of 3
     assert np.bincount(functions.degree).tolist() == [0, 4, 6, 4]
