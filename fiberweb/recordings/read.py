@@ -70,8 +70,17 @@ def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
     return response
 
 
-def refused(path: str | Path, reason: str) -> xr.Dataset:
-    """What stands for a recording that cannot be used, and says why."""
+def attempt(path: str | Path, options: dict) -> xr.Dataset:
+    """`read`, or what stands for a recording that is refused: a Dataset with nothing in it but the
+    attributes status 'refused', sanity and the names."""
+    try:
+        return read(path, False, options)
+    except ValueError as error:
+        return _refused(path, str(error))
+
+
+def _refused(path: str | Path, reason: str) -> xr.Dataset:
+    print(reason)
     found = [Finding("file", "refused", reason)]
     attrs = {"status": "refused", "setup": "recording", "run": Path(path).stem}
     return xr.Dataset(attrs=attrs | {"source": Path(path).name, "sanity": json.dumps(found)})

@@ -3,6 +3,7 @@ and a delay line compute through the same readout."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 LEGENDRE = np.arange(1, 11)  # orders of C_nl, as in the paper
 LONGEST = 50_000  # frames that are scored: more would tell no more
+SCORES = ["readout", "quantity", "value", "low", "high"]
+PROFILE = ["readout", "degree", "delay_s", "capacity"]
 INTERVAL = (2.5, 97.5)  # percentiles
 
 
@@ -41,6 +44,8 @@ class Card:
     """What a body computes.
 
     Attributes:
+        status: 'ok', or 'refused' of a recording that has no card: then the verdict says why, and
+            the rest is empty.
         verdict: one sentence.
         notes: what has to be known beside it, a sentence each.
         facts: numbers that belong to all of the card, by name.
@@ -54,6 +59,7 @@ class Card:
     facts: dict
     scores: pd.DataFrame
     profile: pd.DataFrame
+    status: str = "ok"
 
     def as_dict(self) -> dict:
         """All of it in what JSON has; no number is null."""
@@ -62,7 +68,7 @@ class Card:
             name: table.astype(object).where(table.notna(), None).to_dict("records")
             for name, table in tables.items()
         }
-        return {"status": "ok", "verdict": self.verdict, "notes": self.notes,
+        return {"status": self.status, "verdict": self.verdict, "notes": self.notes,
                 "facts": plain(self.facts)} | plain(rows)  # fmt: skip
 
     def __str__(self) -> str:
@@ -139,11 +145,23 @@ def card(response: xr.Dataset, **options) -> Card:
         "amplitude": chosen.amplitude, "alpha": chosen.alpha, "recipe": chosen.recipe,
         "bar": chosen.bar, "cut_frames": cut, "refused": refused,
     }  # fmt: skip
-    scores = pd.DataFrame(rows, columns=["readout", "quantity", "value", "low", "high"])
+    scores = pd.DataFrame(rows, columns=SCORES)
     return Card(
         verdict(quantities, facts), notes(scores, facts, response.attrs.get("sanity")), facts,
-        scores, pd.DataFrame(profile, columns=["readout", "degree", "delay_s", "capacity"]),
+        scores, pd.DataFrame(profile, columns=PROFILE),
     )  # fmt: skip
+
+
+def attempt(response: xr.Dataset, options: dict) -> Card:
+    """`card`, or one that was refused, of a recording that was refused when it was read or that
+    cannot be scored."""
+    try:
+        if response.attrs["status"] == "refused":
+            raise ValueError(json.loads(response.attrs["sanity"])[0][-1])
+        return card(response, **options)
+    except ValueError as error:
+        empty = pd.DataFrame(columns=SCORES), pd.DataFrame(columns=PROFILE)
+        return Card(str(error), [], {}, *empty, status="refused")
 
 
 class _Judge:

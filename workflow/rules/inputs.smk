@@ -62,3 +62,9 @@ def figure_options(wildcards):
 def authors_tables():
     folder = CONFIG.published_tables
     return sorted(glob(f"{folder}/*.csv")) if folder else []
+
+
+def recorded_file(wildcards):
+    """The file of a recording; none where it is not there, which the job then says."""
+    path = RECORDED[wildcards.recording].path
+    return [str(path)] if path.exists() else []
