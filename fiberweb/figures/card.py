@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from textwrap import fill
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,6 +17,7 @@ from fiberweb.figures import panels, plots, style
 
 READOUTS = {"body": "body", "u": "$u$", "powers": "powers", "derivatives": "derivatives",
             "delay line": "delay line"}  # fmt: skip
+SHORT = ("body", "$u$", "powers", "deriv.", "delays")
 COLOURS = dict(zip(READOUTS, [style.INK, *style.colours(4)], strict=True))
 MARKS = dict(zip(READOUTS, "osD^v", strict=True))
 DEGREES = dict(zip((1, 2, 3), style.SEQUENTIAL([0.1, 0.45, 0.7]), strict=True))
@@ -64,7 +66,7 @@ def draw(card: Mapping, path: str | Path) -> Figure:
         axes = top.subplots(1, 4, width_ratios=[0.8, 1.5, 1.2, 1.0])
         _capacities(axes[0], scores)
         _processing(axes[1], scores)
-        _delays(axes[2], pd.DataFrame(card["profile"]))
+        _delays(axes[2], pd.DataFrame(card["profile"]), card["facts"])
         _tasks(axes[3], scores, card["facts"])
         handles = {
             READOUTS[name]: Line2D([], [], color=COLOURS[name], marker=MARKS[name], ls="none")
@@ -112,8 +114,7 @@ def _processing(ax: Axes, scores: pd.DataFrame) -> None:
         total = scores.loc[("ipc", name)]
         if total.notna().all():
             ax.vlines(at, total["low"], total["high"], color=style.INK, lw=0.8)
-    ax.set_xticks(range(len(READOUTS)), READOUTS.values(), rotation=25, ha="right",
-                  rotation_mode="anchor")  # fmt: skip
+    ax.set_xticks(range(len(READOUTS)), SHORT)
     ax.set_ylabel("Processing capacity")
     shown = 1.1 * scores.loc["ipc"].max().max()
     for bound, look in BOUNDS.items():
@@ -124,11 +125,11 @@ def _processing(ax: Axes, scores: pd.DataFrame) -> None:
     panels.letter(ax, "b", "processing")
 
 
-def _delays(ax: Axes, profile: pd.DataFrame) -> None:
+def _delays(ax: Axes, profile: pd.DataFrame, facts: Mapping) -> None:
     mine = profile[profile["readout"] == "body"]
     table = mine.pivot_table(index="delay_s", columns="degree", values="capacity", aggfunc="sum")
     table = table.fillna(0.0)
-    width = 0.8 * 1e3 * (table.index[1] - table.index[0]) if len(table) > 1 else 1.0
+    width = min([0.8 * np.diff(1e3 * table.index).min(initial=np.inf), 150.0 * facts["horizon_s"]])
     below = 0.0
     for degree in table:
         ax.bar(1e3 * table.index, table[degree], width, below, color=DEGREES[degree])
@@ -164,18 +165,22 @@ def _table(ax: Axes, scores: pd.DataFrame) -> None:
         for name, label in quantities.items()
     ]
     half = -(-len(rows) // 2)
-    rows = [row + (rows[half + at] if half + at < len(rows) else [""] * len(row))
-            for at, row in enumerate(rows[:half])]  # fmt: skip
-    names = ["", "body", "u", "powers", "deriv.", "delays"]
-    table = ax.table(rows, colLabels=names * 2, loc="center", cellLoc="right", edges="open",
-                     colWidths=[0.14, 0.07, 0.07, 0.07, 0.07, 0.08] * 2)  # fmt: skip
-    table.auto_set_font_size(False)
-    table.set_fontsize(6.5)
-    for cell in table.get_celld().values():
-        cell.PAD = 0.02
-        cell.set_height(1.0 / (half + 1))
+    for at, row in enumerate(rows):
+        side, line = divmod(at, half)
+        if line == 0:
+            _line(ax, side, 0, half, ["", *SHORT])
+        _line(ax, side, line + 1, half, row)
     ax.set_axis_off()
 
 
+def _line(ax: Axes, side: int, line: int, half: int, cells: list[str]) -> None:
+    """A line of the table, in its left or right half: a name, then a number for each readout."""
+    ends = 0.5 * side + 0.16 + 0.064 * np.arange(len(cells))
+    for end, cell in zip(ends, cells, strict=True):
+        ax.text(end, 1.0 - (line + 0.5) / (half + 1), cell, ha="right", va="center", fontsize=6.5)
+
+
 def _number(value: float) -> str:
-    return "–" if pd.isna(value) else f"{value:.3g}"
+    if pd.isna(value):
+        return "–"
+    return f"{value:.3g}" if abs(value) >= 0.01 else f"{value:.2g}"

@@ -21,8 +21,8 @@ from fiberweb.recordings.options import Reading
 
 def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
     """See `fiberweb.recordings.read_recording`."""
+    check_names(options, [*Reading.model_fields, "quiet"])
     path = Path(path)
-    check_names(options, Reading.model_fields)
     try:
         chosen = Reading(**plain(options))
     except ValidationError as error:

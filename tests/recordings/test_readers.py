@@ -1,5 +1,8 @@
 """Every format gives the same recording; options say what a file does not."""
 
+import re
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
@@ -216,3 +219,18 @@ def test_what_the_sanity_list_finds(tmp_path, made, change, name, sentence):
     response = read_recording(files.wide(tmp_path / "a.csv", time, u, positions), quiet=True)
     found = sanity(response).set_index("name").loc[[name]]
     assert (found["severity"] == "warning").all() and sentence in " ".join(found["sentence"])
+
+
+def test_the_format_of_the_page_on_extending(tmp_path, made, monkeypatch):
+    page = Path(__file__).parents[2] / "docs" / "extending.md"
+    section = page.read_text().split("\n## A recording format\n")[1]
+    (code,) = re.findall(r"```python\n(.*?)```", section, re.DOTALL)
+    (tmp_path / "npz_format.py").write_text(code)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setitem(READERS, "npz", "npz_format")
+    _, u, positions = made
+    np.savez(tmp_path / "film.npz", u=u, points=positions)
+    path, options = tmp_path / "film.npz", {"rate": RATE, "input": "u", "markers": "points"}
+    assert_same(read_recording(path, quiet=True, **options), made)
+    with pytest.raises(ValueError, match="nearest valid path is 'points'"):
+        read_recording(path, quiet=True, **options | {"markers": "point"})

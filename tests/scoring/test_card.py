@@ -28,6 +28,14 @@ def taps(u, count):
     return np.stack([np.r_[np.zeros(k), u[: len(u) - k]] for k in range(count)], axis=1)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_surrogates():
+    """Enough for what is tested here; `test_processing` has all of them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(processing, "SURROGATES", 19)
+        yield
+
+
 @pytest.fixture(scope="module")
 def u():
     return np.random.default_rng(4).uniform(-1.0, 1.0, 1500)
