@@ -76,5 +76,7 @@ onstart:
 
 
 onsuccess:
+    for line in found_in_recordings():
+        print(line)
     print(f"Snakemake's own process took {time.process_time():.0f} s of CPU time.")
     print(f"Done: {made()}.")

@@ -15,11 +15,10 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 def opened(path: Path) -> Iterator[h5py.File]:
     """A file to read from; ValueError, one sentence, if it is broken."""
     try:
-        file = h5py.File(path, "r")
-    except OSError as error:
+        with h5py.File(path, "r") as file:
+            yield file
+    except (OSError, RuntimeError) as error:  # the latter for what is broken further inside
         raise ValueError(f"{path} cannot be read ({error}): it may have been cut short") from None
-    with file:
-        yield file
 
 
 def arrays(file: h5py.File) -> list[str]:

@@ -27,7 +27,12 @@ def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
         chosen = Reading(**plain(options))
     except ValidationError as error:
         raise ValueError(sentence(error)) from None
-    raw = _reader(path, chosen).read(path, chosen)
+    try:
+        raw = _reader(path, chosen).read(path, chosen)
+    except ValueError as error:
+        if str(path) in str(error):
+            raise
+        raise ValueError(f"{path} cannot be read ({error})") from None  # a library's own words
     found = list(raw.findings)
     time, rate, more = clock.frames(raw, chosen, path)
     found += more

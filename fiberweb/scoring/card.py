@@ -107,35 +107,24 @@ def card(response: xr.Dataset, **options) -> Card:
     check_frames(len(u) - start + horizon, rate, chosen.horizon, chosen.split)
     fitted = slice(start, training_end(start, len(u), chosen.split))
     x, scaled = x[:, _different(x[fitted])], scale_input(u)
-    judge = _Judge(fitted, horizon, chosen.alpha)
-    lags = np.arange(horizon + 1)
-    targets = {
-        "c_nl": legendre_targets(scaled, LEGENDRE),
-        # rows of the card alone: before them, a lag reaches beyond the recording
-        "c_m": np.nan_to_num(recall_targets(scaled, lags)),
-    }
-    refused = []
-    for order in chosen.order:
-        try:
-            series = tasks.narma(chosen.amplitude * (1.0 + scaled) / 2.0, order)
-            targets[f"narma{order}"] = series[: len(u), None]
-        except ValueError as error:
-            refused.append(str(error))
-    sums = {name: judge.sums(x, target) for name, target in targets.items()}
+    targets, refused = _targets(scaled, horizon, chosen)
     taps = chosen.taps or _remembered(scaled, x, fitted, chosen, horizon)
-    readouts = {BODY: x} | trivial_readouts(u, rate) | {TAPS: _delay_line(u, taps)}
     functions = processing.basis(scaled, fitted, horizon)
     step = processing.apart(scaled[fitted], horizon)
+    judge = _Judge(fitted, horizon, chosen.alpha)
     quantities, rows, profile = {}, [], []
+    readouts = {BODY: x} | trivial_readouts(u, rate) | {TAPS: _delay_line(u, taps)}
     for name, signals in readouts.items():
-        mine = sums if name == BODY else {k: judge.sums(signals, t) for k, t in targets.items()}
-        found, threshold, spread = judge.processing(signals, functions)
-        quantities[name] = _quantities(mine) | found
-        profile += [(name, *row, value) for row, value in spread(rate)]
+        found = {}
+        for target, values in targets.items():
+            found |= _quantities(target, judge.sums(signals, values))
+        totals, threshold, at_delay = judge.processing(signals, functions)
+        quantities[name] = found | totals
         counts = rank.ranks(signals, scaled, fitted, max(taps - 1, step), step)
+        counts["ipc_threshold"] = threshold
         rows += [(name, quantity, value, np.nan, np.nan) for quantity, value in counts.items()]
         rows += [(name, quantity, *_interval(q)) for quantity, q in quantities[name].items()]
-        rows.append((name, "ipc_threshold", threshold, np.nan, np.nan))
+        profile += [(name, degree, delay / rate, c) for (degree, delay), c in at_delay.items()]
     tested = len(u) - fitted.stop
     facts = {
         "run": response.attrs.get("run", ""), "frames": len(u), "rate_Hz": rate,
@@ -146,10 +135,10 @@ def card(response: xr.Dataset, **options) -> Card:
         "bar": chosen.bar, "cut_frames": cut, "refused": refused,
     }  # fmt: skip
     scores = pd.DataFrame(rows, columns=SCORES)
+    said = notes(scores, facts, response.attrs.get("sanity"))
     return Card(
-        verdict(quantities, facts), notes(scores, facts, response.attrs.get("sanity")), facts,
-        scores, pd.DataFrame(profile, columns=PROFILE),
-    )  # fmt: skip
+        verdict(quantities, facts), said, facts, scores, pd.DataFrame(profile, columns=PROFILE)
+    )
 
 
 def attempt(response: xr.Dataset, options: dict) -> Card:
@@ -177,29 +166,28 @@ class _Judge:
         estimate = estimated(readouts, targets, self._fitted, alpha, tested)
         return block_sums(targets[tested], estimate, np.ones_like(estimate, bool), self._block)
 
-    def processing(self, readouts: np.ndarray, functions: processing.Basis):
-        """(the totals as in `_quantities`, the threshold, what the profile shows at a rate)."""
+    def processing(self, readouts: np.ndarray, functions: processing.Basis) -> tuple:
+        """Totals as in `_quantities`, the threshold, and the capacity at each (degree, delay)."""
         alpha = self._penalty(readouts, functions.values)
         sums, threshold = processing.processing(
             readouts, functions, self._fitted, alpha, self._block
         )
-        c = capacity_of(sums.sum(axis=1))
-        counted, again = c > threshold, redrawn(sums)
+        c, again = capacity_of(sums.sum(axis=1)), redrawn(sums)
         draws = None if again is None else capacity_of(again)
+        counted = c > threshold
         groups = {"ipc": counted}
         groups |= {f"ipc_{d}": counted & (functions.degree == d) for d in processing.DEGREES}
         totals = {
-            name: (processing.total(c, group),
-                   None if draws is None else processing.total(draws, group))
+            name: tuple(
+                None if each is None else processing.total(each, group) for each in (c, draws)
+            )
             for name, group in groups.items()
-        }  # fmt: skip
-
-        def spread(rate):
-            for degree, delay in dict.fromkeys(zip(functions.degree, functions.delay, strict=True)):
-                same = counted & (functions.degree == degree) & (functions.delay == delay)
-                yield (int(degree), delay / rate), float(processing.total(c, same))
-
-        return totals, threshold, spread
+        }
+        at_delay: dict[tuple[int, int], float] = {}
+        for degree, delay, value in zip(functions.degree, functions.delay, np.where(counted, c, 0)):
+            where = int(degree), int(delay)
+            at_delay[where] = at_delay.get(where, 0.0) + float(value)
+        return totals, threshold, at_delay
 
     def _penalty(self, readouts: np.ndarray, targets: np.ndarray) -> float:
         if self._alpha != "cv":
@@ -219,6 +207,23 @@ def _arrays(response, rate: float | None) -> tuple[np.ndarray, np.ndarray, float
     cut = max(0, thinned.sizes["time"] - LONGEST)
     scored = thinned.isel(time=slice(cut, None))
     return scored["input"].values, recording.signals(scored), own / step, cut
+
+
+def _targets(scaled: np.ndarray, horizon: int, chosen: CardOptions) -> tuple[dict, list[str]]:
+    """Targets (T, q) by name, and why others are left out."""
+    targets = {
+        "c_nl": legendre_targets(scaled, LEGENDRE),
+        # in the rows that are scored, no lag reaches beyond the start
+        "c_m": np.nan_to_num(recall_targets(scaled, np.arange(horizon + 1))),
+    }
+    refused = []
+    for order in chosen.order:
+        try:
+            series = tasks.narma(chosen.amplitude * (1.0 + scaled) / 2.0, order)
+            targets[f"narma{order}"] = series[: len(scaled), None]
+        except ValueError as error:
+            refused.append(str(error))
+    return targets, refused
 
 
 def _different(moved: np.ndarray) -> list[int]:
@@ -248,17 +253,15 @@ def _delay_line(u: np.ndarray, taps: int) -> np.ndarray:
     return np.nan_to_num(recall_targets(u, range(taps)))
 
 
-def _quantities(sums: dict[str, np.ndarray]) -> dict[str, tuple]:
-    """(value, redrawn values or None) of every quantity from sums (4, blocks, q)."""
-    found = {}
-    for name, each in sums.items():
-        measures = {name: _mean}
-        if name.startswith("narma"):
-            measures = {f"{name}_{error}": of for error, of in _ERRORS.items()}
-        whole, draws = each.sum(axis=1), redrawn(each)
-        for quantity, of in measures.items():
-            found[quantity] = (of(whole), None if draws is None else of(draws))
-    return found
+def _quantities(target: str, sums: np.ndarray) -> dict[str, tuple]:
+    """(value, redrawn values or None) of what is said of a target, from sums (4, blocks, q)."""
+    measures = {target: _mean}
+    if target.startswith("narma"):
+        measures = {f"{target}_{error}": of for error, of in _ERRORS.items()}
+    whole, draws = sums.sum(axis=1), redrawn(sums)
+    return {
+        name: (of(whole), None if draws is None else of(draws)) for name, of in measures.items()
+    }
 
 
 def _mean(sums: np.ndarray) -> np.ndarray:

@@ -24,7 +24,7 @@ from fiberweb.scoring.blocks import block_sums
 from fiberweb.scoring.regression import estimated
 
 DEGREES = (1, 2, 3)
-MOST = 600  # functions ...
+MOST = 450  # functions ...
 ROWS_EACH = 16  # ... or one for so many training rows
 ALIKE = 0.5  # correlation of the input with itself at which delays count as different
 NEW = 1e-2  # of a function's rms has to be new: a ten-thousandth of its variance

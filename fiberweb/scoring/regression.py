@@ -230,7 +230,8 @@ def estimated(readouts, targets, fitted: slice, alpha: float, rows=slice(None)) 
     """
     x = narrowed(standardise(readouts, fitted))
     mean = targets[fitted].mean(axis=0)
-    cross = x[fitted].T @ (targets[fitted] - mean)
+    # x^T (z - mean z) without a copy of all targets
+    cross = x[fitted].T @ targets[fitted] - np.outer(x[fitted].sum(axis=0), mean)
     same = np.ones(targets.shape[1], dtype=int)
     weights, offset = solve_windows(x, cross, same * fitted.start, same * fitted.stop, alpha)
     return x[rows] @ weights + (mean - offset)

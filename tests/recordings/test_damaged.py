@@ -248,7 +248,7 @@ def test_memory_of_a_long_recording_is_bounded_by_its_rows(tmp_path):
     time, u, positions = body(20_000, markers=10)
     short = files.wide(tmp_path / "short.csv", time, u, positions, float_format="%.3f")
     header, _, block = short.read_text().partition("\n")
-    many, lines = 15, [row.split(",", 1)[1] for row in block.splitlines()]
+    many, lines = 10, [row.split(",", 1)[1] for row in block.splitlines()]
     with (tmp_path / "long.csv").open("w") as file:
         file.write(header + "\n")
         for at in range(many * len(lines)):

@@ -38,7 +38,7 @@ def few_surrogates():
 
 @pytest.fixture(scope="module")
 def u():
-    return np.random.default_rng(4).uniform(-1.0, 1.0, 1500)
+    return np.random.default_rng(4).uniform(-1.0, 1.0, 1000)
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +126,7 @@ def test_test_rows_change_no_weight(computing, alpha, monkeypatch):
         return found
 
     monkeypatch.setattr(regression, "solve_windows", noted)
-    first = 10 + int(0.75 * 1490)
+    first = 10 + int(0.75 * 990)
     for change in (lambda x: x, lambda x: 100 * np.random.default_rng(0).standard_normal(x.shape)):
         moved = computing["displacement"].copy()
         moved[first:] = change(moved[first:].values)
@@ -179,14 +179,14 @@ def test_a_key_that_is_given_wins_over_the_recipe(computing):
 
 
 def test_a_thinned_card_is_that_of_the_thinned_recording(computing, made):
-    fine = computing.isel(time=np.repeat(np.arange(1500), 2))
-    fine = fine.assign_coords(time=np.arange(3000) / (2 * RATE)).assign_attrs(sample_rate=2 * RATE)
+    fine = computing.isel(time=np.repeat(np.arange(1000), 2))
+    fine = fine.assign_coords(time=np.arange(2000) / (2 * RATE)).assign_attrs(sample_rate=2 * RATE)
     same(made, card(fine, rate=RATE))
 
 
 def test_of_a_long_recording_the_last_part_is_scored(computing, monkeypatch):
-    monkeypatch.setattr(cards, "LONGEST", 1000)
-    assert "Only the last 1000 frames" in " ".join(card(computing).notes)
+    monkeypatch.setattr(cards, "LONGEST", 800)
+    assert "Only the last 800 frames" in " ".join(card(computing).notes)
 
 
 def test_a_card_is_json_and_prints(made):
