@@ -8,6 +8,7 @@
 #   snakemake --cores 2 topology     one study alone
 #   snakemake --cores 2 compliant    the same with crossings that give (setup `compliant`)
 #   snakemake --cores 2 claims       the paper's claims in every setup, side by side
+#   snakemake --cores 2 recordings   a score card of each recording that the config lists
 #   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
 import os
@@ -37,6 +38,7 @@ include: "workflow/rules/study.smk"
 include: "workflow/rules/buckling.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/accuracy.smk"
+include: "workflow/rules/recordings.smk"
 
 
 rule figures:
@@ -74,5 +76,7 @@ onstart:
 
 
 onsuccess:
+    for line in found_in_recordings():
+        print(line)
     print(f"Snakemake's own process took {time.process_time():.0f} s of CPU time.")
     print(f"Done: {made()}.")

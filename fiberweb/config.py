@@ -14,20 +14,22 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Annotated, Self
+from typing import Annotated, Self, get_args, get_origin
 
 from pydantic import BeforeValidator, ValidationError, create_model, model_validator
 
 from fiberweb import studies
-from fiberweb.errors import sentence
+from fiberweb.errors import location, sentence
 from fiberweb.folders import folder, missing_disk
 from fiberweb.layers import is_number, overlay, read
+from fiberweb.recorded import RecordingSection
 from fiberweb.sections import (
     NumericsSection,
     SceneSection,
     ScoringSection,
     Section,
     SetupsSection,
+    is_section,
     key,
 )
 from fiberweb.studies.base import CHOICES, ForceMap, Lab
@@ -54,6 +56,9 @@ class General(Section):
     setups: SetupsSection = SetupsSection()
     numerics: NumericsSection = NumericsSection()
     scoring: ScoringSection = ScoringSection()
+    recordings: list[RecordingSection] = key(
+        [], "files or folders of recordings: the target recordings"
+    )
 
     @model_validator(mode="after")
     def _studies_agree(self) -> Self:
@@ -151,13 +156,18 @@ def _explain(error: ValidationError) -> str:
     problem = error.errors()[0]
     if problem["type"] == "value_error":
         return str(problem["ctx"]["error"])
-    path = [part for part in problem["loc"] if isinstance(part, str)]
+    path = [part for part in location(problem) if isinstance(part, str)]
+    if problem["type"] == "missing":
+        name = sentence(error).partition(" = ")[0]
+        return f"{name} has to be given: {_look_up(path)[1].description}"
     if problem["type"] == "extra_forbidden":
         return sentence(error, known=_look_up(path[:-1])[0].model_fields) + _spelling(path)
     section, field = _look_up(path)
     if section is not None:
         keys = ", ".join(section.model_fields)
         name, first = ".".join(path), next(iter(section.model_fields))
+        if path[0] == "recordings":
+            return f"{name} = {problem['input']!r}: give a list of groups of keys, each of {keys}"
         return (
             f"{name} = {problem['input']!r}: this is a group of keys ({keys}), given as "
             f"{_nested([*path, first])}"
@@ -177,8 +187,9 @@ def _look_up(path: list[str]):
     for name in path:
         field = section.model_fields[name]
         section = field.annotation
-    is_section = isinstance(section, type) and issubclass(section, Section)
-    return (section, None) if is_section else (None, field)
+        if get_origin(section) is list and is_section(get_args(section)[0]):
+            section = get_args(section)[0]
+    return (section, None) if is_section(section) else (None, field)
 
 
 def _spelling(path: list[str]) -> str:

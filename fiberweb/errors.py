@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
+from itertools import takewhile
 
 
 def unknown_key(key: str, known, where: str = "", kind: str = "key") -> str:
@@ -22,10 +24,19 @@ def sentence(error, where: str = "", known=()) -> str:
         known: valid keys at the level of the error, used for unknown ones.
     """
     problem = error.errors()[0]
-    *above, key = [part for part in (where, *map(str, problem["loc"])) if part]
+    *above, key = [part for part in (where, *map(str, location(problem))) if part]
     if problem["type"] == "extra_forbidden":
         return unknown_key(key, known, "".join(f"{part}." for part in above))
     if problem["type"] == "value_error":
         return problem["msg"].removeprefix("Value error, ")
     text = "List at least one" if problem["type"] == "too_short" else problem["msg"]
     return f"{'.'.join([*above, key])} = {problem['input']!r}: {text[0].lower()}{text[1:]}"
+
+
+def location(problem) -> list:
+    """Where the first problem of a ValidationError is, without pydantic's names for the kinds of
+    value that a key may have."""
+    if problem["type"] == "extra_forbidden":  # as it was written, whatever it holds
+        return list(problem["loc"])
+    kinds = re.compile(r"str|.*[^\w ].*")
+    return list(takewhile(lambda part: not kinds.fullmatch(str(part)), problem["loc"]))

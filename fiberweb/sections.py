@@ -48,6 +48,11 @@ class Section(BaseModel):
         return plain(values)
 
 
+def is_section(annotation: object) -> bool:
+    """Whether a field's type is a section of its own."""
+    return isinstance(annotation, type) and issubclass(annotation, Section)
+
+
 class SceneSection(Section):
     """Physics and recording of every run, in every setup."""
 

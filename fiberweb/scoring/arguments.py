@@ -15,9 +15,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 INPUT, DISPLACEMENT = {"input": ("time",)}, {"displacement": ("time", "readout", "axis")}
+ORIGINS = (*SETUPS, "recording")
 ATTRIBUTES = {
     "status": "'ok' or 'unstable'",
-    "setup": f"one of {', '.join(map(repr, SETUPS))}",
+    "setup": f"one of {', '.join(map(repr, ORIGINS))}",
 }
 
 
@@ -42,7 +43,7 @@ def check_input(response, scoring: str | None, options: dict) -> None:
     _check_variables(response, INPUT)
     # its setup says how a response is scored, unless the caller does
     _check_attributes(response, () if scoring else ("setup",))
-    if not scoring and (setup := response.attrs["setup"]) not in [*SETUPS]:
+    if not scoring and (setup := response.attrs["setup"]) not in ORIGINS:
         raise ValueError(f"response has setup = {shown(setup)}; set it to {ATTRIBUTES['setup']}")
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from fiberweb.scoring import arguments, recording
+from fiberweb.scoring.blocks import block_sums, bootstrap_error, capacity_of
 from fiberweb.scoring.regression import (
     Fit,
     Options,
@@ -29,8 +30,6 @@ from fiberweb.scoring.regression import (
 
 if TYPE_CHECKING:
     import xarray as xr
-
-REPLICATES = 400  # of the bootstrap
 
 
 @dataclass(frozen=True)
@@ -260,20 +259,20 @@ def _score_fits(fits: Iterable[Fit], scoring: str, block: int) -> tuple:
     """(c, c of the training part, raw c), each (q,), and the standard error of the total."""
     sums = [_sums(fit, scoring, block) for fit in fits]
     test, train, raw = (np.concatenate(each, axis=-1) for each in zip(*sums, strict=True))
-    c, c_train, c_raw = (_capacity(each) for each in (test.sum(axis=1), train, raw))
+    c, c_train, c_raw = (capacity_of(each) for each in (test.sum(axis=1), train, raw))
     lowest = 0.0 if scoring == "published" else -np.inf
-    return np.maximum(c, lowest), np.maximum(c_train, lowest), c_raw, _bootstrap_error(test)
+    return np.maximum(c, lowest), np.maximum(c_train, lowest), c_raw, bootstrap_error(test)
 
 
 def _sums(fit: Fit, scoring: str, block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """`_block_sums` of the test part; of the training part, and of the test part as it is, summed
+    """`block_sums` of the test part; of the training part, and of the test part as it is, summed
     over the blocks."""
-    test = raw = _block_sums(fit.target, fit.estimate, fit.test, block)
+    test = raw = block_sums(fit.target, fit.estimate, fit.test, block)
     train = fit.target, fit.estimate
     if scoring == "published":
-        test = _block_sums(*_replace_overshoot(fit, fit.test), fit.test, block)
+        test = block_sums(*_replace_overshoot(fit, fit.test), fit.test, block)
         train = _replace_overshoot(fit, fit.train)
-    train = _block_sums(*train, fit.train, block)
+    train = block_sums(*train, fit.train, block)
     return test, train.sum(axis=1), raw.sum(axis=1)
 
 
@@ -282,38 +281,3 @@ def _replace_overshoot(fit: Fit, part: np.ndarray) -> tuple[np.ndarray, np.ndarr
     outside = np.abs(fit.estimate) > 1.0
     mean = mean_of(fit.target, part)
     return np.where(outside, mean, fit.target), np.where(outside, mean, fit.estimate)
-
-
-def _block_sums(target, estimate, part, block) -> np.ndarray:
-    """(4, blocks, b): rows, sum z, sum z^2 and sum (zhat - z)^2 of the part, per block of frames.
-
-    Blocks count back from the last frame of the part, where the test parts of all lags end
-    together; the first may be short, and those before the part are empty. z is taken from the
-    part's mean, which keeps its digits.
-    """
-    end = np.flatnonzero(part.any(axis=1))[-1] + 1
-    target, estimate, part = target[:end], estimate[:end], part[:end]
-    z = np.where(part, target - mean_of(target, part), 0.0)
-    error = np.where(part, estimate - target, 0.0)
-    edges = np.arange(len(part), 0, -block)[::-1] - block
-    edges[0] = 0
-    return np.stack([np.add.reduceat(v, edges) for v in (part * 1.0, z, z * z, error * error)])
-
-
-def _capacity(sums: np.ndarray) -> np.ndarray:
-    """c[z] from sums (4, ...) of `_block_sums`; a target that does not vary has none: 0."""
-    n, z, zz, error = sums
-    spread = zz - z * z / np.maximum(n, 1.0)
-    varies = spread > 1e-12 * n  # targets are of order 1
-    return np.where(varies, 1.0 - error / np.where(varies, spread, 1.0), 0.0)
-
-
-def _bootstrap_error(sums: np.ndarray) -> float:
-    """Standard error of the mean of max(c, 0) as the blocks of sums (4, blocks, q) are redrawn."""
-    sums = sums[:, sums[0].any(axis=1)]
-    blocks = sums.shape[1]
-    if blocks < 2:
-        return math.nan
-    draws = np.random.default_rng(0).multinomial(blocks, np.full(blocks, 1 / blocks), REPLICATES)
-    c = _capacity(draws.astype(float) @ sums)
-    return float(np.maximum(c, 0.0).mean(axis=1).std(ddof=1))

@@ -197,7 +197,7 @@ class Fits:
             target, (train, _) = targets(first, last), self._parts(first, last)
             means[first:last] = mean = mean_of(target, train)
             cross[:, first:last] = x.T @ np.where(train, target - mean, 0.0)
-        self._weights, offset = _solve_windows(x, cross, starts, self._ends, options.alpha)
+        self._weights, offset = solve_windows(x, cross, starts, self._ends, options.alpha)
         self._intercepts = means - offset
 
     def blocks(self, first: int = 0, last: int | None = None) -> Iterator[Fit]:
@@ -223,6 +223,20 @@ def joined(fits: Iterable[Fit]) -> Fit:
     return Fit(*(np.hstack(each) for each in zip(*map(astuple, fits), strict=True)))
 
 
+def estimated(readouts, targets, fitted: slice, alpha: float, rows=slice(None)) -> np.ndarray:
+    """Ridge estimates (n, q) of targets (T, q) from readouts (T, p), in the rows asked for.
+
+    Scale, mean and weights are of the fitted rows alone, as in the clean scoring.
+    """
+    x = narrowed(standardise(readouts, fitted))
+    mean = targets[fitted].mean(axis=0)
+    # x^T (z - mean z) without a copy of all targets
+    cross = x[fitted].T @ targets[fitted] - np.outer(x[fitted].sum(axis=0), mean)
+    same = np.ones(targets.shape[1], dtype=int)
+    weights, offset = solve_windows(x, cross, same * fitted.start, same * fitted.stop, alpha)
+    return x[rows] @ weights + (mean - offset)
+
+
 def _shuffled(frames: int, options) -> np.ndarray:
     """The rows in the order in which sklearn's train_test_split would choose them for the authors'
     random_state."""
@@ -231,7 +245,7 @@ def _shuffled(frames: int, options) -> np.ndarray:
     return np.roll(order, -tested)  # sklearn tests on the first of the permutation, `Fits` last
 
 
-def _solve_windows(x, cross, starts, ends, alpha) -> tuple[np.ndarray, np.ndarray]:
+def solve_windows(x, cross, starts, ends, alpha) -> tuple[np.ndarray, np.ndarray]:
     """Ridge weights (p, q), and (q,) what they make of the mean of x over each training window.
 
     x (T, p) has a mean near 0; cross (p, q) = x^T (z - mean z) over the window. Windows differ by

@@ -8,9 +8,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import get_args
 
 from fiberweb.config import Config
-from fiberweb.sections import Section
+from fiberweb.sections import Section, is_section
 
 FOLDER = Path(__file__).parents[2] / "config"
 TABLE_STARTS = "<!-- The table is written by `python -m fiberweb.tools.schema`. -->\n"
@@ -32,9 +33,12 @@ def rows(section: Section, prefix: str = "") -> Iterator[tuple[str, ...]]:
     """The cells of the table, section by section, for a config of default values."""
     properties = section.model_json_schema()["properties"]
     for name, field in type(section).model_fields.items():
-        value = getattr(section, name)
+        value = getattr(section, name, "")  # a key that has to be given has none
         if isinstance(value, Section):
             yield from rows(value, f"{prefix}{name}.")
+            continue
+        if value == [] and is_section(item := get_args(field.annotation)[0]):
+            yield from rows(item.model_construct(), f"{prefix}{name}[].")
             continue
         extra = field.json_schema_extra
         default = json.dumps(value).strip('"')
@@ -45,6 +49,8 @@ def rows(section: Section, prefix: str = "") -> Iterator[tuple[str, ...]]:
 
 
 def _range(schema: dict) -> str:
+    if "const" in schema:
+        return str(schema["const"])
     if "anyOf" in schema:
         return " or ".join(_range(part) for part in schema["anyOf"])
     if "enum" in schema:
@@ -55,7 +61,7 @@ def _range(schema: dict) -> str:
     parts = ["even"] if schema.get("multipleOf") == 2 else []
     parts += ["whole"] if schema["type"] == "integer" and not parts else []
     parts += [text.format(schema[name]) for name, text in bounds.items() if name in schema]
-    names = {"string": "text", "boolean": "true, false"}
+    names = {"string": "text", "boolean": "true, false", "object": "group"}
     return ", ".join(parts) or names.get(schema["type"], schema["type"])
 
 

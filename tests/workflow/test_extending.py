@@ -59,7 +59,10 @@ def test_the_study_of_the_page(smoked, edited):
     shutil.rmtree(tree.folder / "fiberweb" / "studies" / "stiffness")
 
 
-@pytest.mark.parametrize("title", ["A study", "A figure of an existing study", "An engine"])
+TITLES = ["A study", "A figure of an existing study", "An engine", "A recording format"]
+
+
+@pytest.mark.parametrize("title", TITLES)
 def test_lines_to_change_are_there(title):
     for (above, _), name in zip(
         added(section(title)), re.findall(r"In `([\w/]+\.py)`, add", section(title)), strict=True

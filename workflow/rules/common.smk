@@ -15,6 +15,7 @@ from fiberweb.layers import check_keys, typed
 from fiberweb.model.scene import SETUPS
 from fiberweb.provenance import add_call
 from fiberweb.recipes import BEST, Recipes, code, digest_of
+from fiberweb.recorded import recorded
 from fiberweb.runs import check, run_table, runs
 from fiberweb.written import cut_short
 
@@ -107,6 +108,7 @@ try:
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
     RECIPES = Recipes(CONFIG, RUNS)
+    RECORDED = recorded(CONFIG.recordings)
     CUT_SHORT = {}
     if workflow.is_main_process:  # a job on a cluster need not check again
         check_folders(CONFIG)
@@ -131,3 +133,4 @@ wildcard_constraints:
     suffix="|".join(SUFFIXES.values()),
     table="|".join(TABLES),
     figure="|".join(FIGURES),
+    recording="[^/]+",

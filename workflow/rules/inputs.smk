@@ -1,5 +1,7 @@
 # What the rules of studies and claims take as input and parameters, by what `fiberweb.studies` says.
 
+import csv
+
 
 def all_cores(wildcards):
     """Asked for by the job alone: `--unlock`, `--summary` and others are given no `--cores`."""
@@ -64,3 +66,20 @@ def figure_options(wildcards):
 def authors_tables():
     folder = CONFIG.published_tables
     return sorted(glob(f"{folder}/*.csv")) if folder else []
+
+
+def recorded_file(wildcards):
+    """The file of a recording; none where it is not there, which the job then says."""
+    path = RECORDED[wildcards.recording].path
+    return [str(path)] if path.exists() else []
+
+
+def found_in_recordings():
+    """What is not in order with the recordings that this call read, a line each; their logs have
+    all that was looked at."""
+    done = [job for job in workflow.dag.finished_jobs if job.rule.name == "recording"]
+    for job in sorted(done, key=lambda job: job.wildcards.recording):
+        with open(job.output.sanity, encoding="utf-8", newline="") as file:
+            for row in csv.DictReader(file):
+                if row["severity"] != "ok":
+                    yield f"{job.wildcards.recording}: {row['severity']}: {row['sentence']}"

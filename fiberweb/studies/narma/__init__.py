@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
+from fiberweb.scoring.tasks import ORDERS
 from fiberweb.sections import Positive, Section, Size, Some, key
 from fiberweb.studies.base import Figure, Lab, Point, Table, crosshatch, every
 
-ORDERS = (2, 5, 10)  # of the recursion
 LEAST_SAMPLES = 2 * max(ORDERS)
 
 

@@ -1,11 +1,6 @@
 """The NARMA-n task on the readouts of a network (paper, Fig. 6, there on the experiment).
 
-The recursions, with y and u zero before the start and u scaled to [0, 0.2]:
-
-- n = 2: y(t+1) = 0.4 y(t) + 0.4 y(t) y(t-1) + 0.6 u(t)^3 + 0.1
-- n = 5, 10: y(t+1) = 0.3 y(t) + 0.05 y(t) sum_{i=0}^{n-1} y(t-i) + 1.5 u(t-n+1) u(t) + 0.1
-
-They are written out here because public implementations differ by an index. One sample is one
+The recursions are those of `fiberweb.scoring.tasks`, with u scaled to [0, 0.2]. One sample is one
 frame of the task's rate, 10 Hz in the paper; of a recording, every k-th frame is taken.
 """
 
@@ -25,8 +20,10 @@ from sklearn.preprocessing import StandardScaler
 from fiberweb.scoring import esn, recording, tables
 from fiberweb.scoring.capacity import trivial_readouts
 from fiberweb.scoring.regression import scale_input
+from fiberweb.scoring.tasks import ORDERS as ORDERS
+from fiberweb.scoring.tasks import narma
 from fiberweb.simulation import dataset
-from fiberweb.studies.narma import ORDERS, check_samples, frames_a_sample
+from fiberweb.studies.narma import check_samples, frames_a_sample
 
 TIMINGS = {"same": 0, "next": 1}  # samples from the readouts to the y that they estimate
 AMPLITUDE = 0.2  # largest u of the task
@@ -48,22 +45,11 @@ def series(u: np.ndarray, order: int) -> np.ndarray:
     Raises:
         ValueError: another order, or an input outside [0, 0.2], where the series may diverge.
     """
-    if order not in ORDERS:
-        raise ValueError(f"order = {order} is no NARMA task of the paper; use 2, 5 or 10")
     if not (np.min(u) >= 0.0 and np.max(u) <= AMPLITUDE):
         raise ValueError(
             f"u runs from {np.min(u):g} to {np.max(u):g}; scale it to 0 to {AMPLITUDE}"
         )
-    past = np.zeros(order)  # zero start: what the recursion reads before t = 0
-    y, u = np.concatenate([past, np.zeros(len(u))]), np.concatenate([past, u])
-    y = np.append(y, 0.0)
-    for t in range(order, len(u)):
-        if order == 2:
-            y[t + 1] = 0.4 * y[t] + 0.4 * y[t] * y[t - 1] + 0.6 * u[t] ** 3 + 0.1
-        else:
-            recent = y[t - order + 1 : t + 1].sum()
-            y[t + 1] = 0.3 * y[t] + 0.05 * y[t] * recent + 1.5 * u[t - order + 1] * u[t] + 0.1
-    return y[order:]
+    return narma(u, order)
 
 
 def split(samples: int) -> tuple[np.ndarray, np.ndarray]:

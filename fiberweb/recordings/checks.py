@@ -1,0 +1,161 @@
+"""What a look at a recording finds: markers that stand still, are there twice or change places,
+jumps, drift, clipping, and the lag between input and markers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from scipy import signal
+
+from fiberweb.recordings.base import Finding
+
+JUMP = 8.0  # times the 99th percentile of a marker's steps
+DRIFT = 2.0  # standard deviations between the means of the first and the last tenth
+CLIPPED = 0.01  # share of frames at an extreme
+LEVELS = 20  # an input of fewer distinct values is one of steps, and no clipped one
+LONGEST = 200_000  # frames that the lag is looked for in
+LAG = 1.0  # s, the longest lag that is looked for
+SHOWN = 5  # of a kind of finding, before they are only counted
+
+
+def exchanges(positions: np.ndarray, names: list[str], rate: float) -> list[Finding]:
+    """Markers that take each other's place from one frame to the next, changed back in place.
+
+    A pair is taken for exchanged where both jump at once, and each lands no further from where the
+    other was than an ordinary step. positions: (T, m, 2); rate: Hz.
+    """
+    found, jumped = [], {}
+    limits = np.empty(len(names))
+    for number in range(len(names)):
+        steps = np.hypot(*np.diff(positions[:, number], axis=0).T)
+        limits[number] = np.quantile(steps, 0.99) if len(steps) else 0.0
+        for frame in np.flatnonzero(steps > JUMP * limits[number])[:1000] + 1:
+            jumped.setdefault(int(frame), []).append(number)
+    for frame in sorted(jumped):
+        left = list(jumped[frame])
+        while len(left) > 1:
+            a = left.pop(0)
+            for b in left:
+                reach = 2.0 * max(limits[a], limits[b])
+                to_b = np.hypot(*(positions[frame, a] - positions[frame - 1, b]))
+                to_a = np.hypot(*(positions[frame, b] - positions[frame - 1, a]))
+                if max(to_a, to_b) <= reach:
+                    positions[frame:, [a, b]] = positions[frame:, [b, a]]
+                    found.append(
+                        Finding(
+                            "exchanged", "repair",
+                            f"markers {names[a]!r} and {names[b]!r} change places at "
+                            f"{frame / rate:.4g} s and were changed back",
+                        )
+                    )  # fmt: skip
+                    left.remove(b)
+                    break
+    return found
+
+
+def look(moved: np.ndarray, u: np.ndarray, names: list[str], rate: float) -> list[Finding]:
+    """The findings of an even recording.
+
+    Args:
+        moved: (T, m, 2) displacements.
+        u: (T,) the input.
+        names: of the m markers.
+        rate: Hz.
+    """
+    return [
+        *_some("constant", _still(moved, names), "every marker moves"),
+        *_some("duplicated", _twice(moved, names), "no marker is there twice"),
+        *_some("jumps", _jumps(moved, u, names, rate), "no signal jumps"),
+        *_some("drift", _drifts(moved, u, names), "no signal drifts"),
+        *_some("clipping", _clipped(moved, u, names), "no signal stays at an extreme"),
+        _lag(moved, u, rate),
+    ]
+
+
+def _some(name: str, sentences: Iterator[str], fine: str) -> list[Finding]:
+    found = list(sentences)
+    if not found:
+        return [Finding(name, "ok", fine)]
+    shown = [Finding(name, "warning", sentence) for sentence in found[:SHOWN]]
+    more = len(found) - SHOWN
+    return shown + ([Finding(name, "warning", f"and {more} more")] if more > 0 else [])
+
+
+def _still(moved, names) -> Iterator[str]:
+    for number, name in enumerate(names):
+        if not np.ptp(moved[:, number], axis=0).any():
+            yield f"marker {name!r} does not move"
+
+
+def _twice(moved, names) -> Iterator[str]:
+    first: dict[int, int] = {}
+    for number, name in enumerate(names):
+        column = np.ascontiguousarray(moved[:, number])
+        other = first.setdefault(hash(column.tobytes()), number)
+        if other != number and column.any():
+            yield f"markers {names[other]!r} and {name!r} are the same"
+
+
+def _signals(moved, u, names) -> Iterator[tuple[str, np.ndarray]]:
+    yield "the input", u
+    for number, name in enumerate(names):
+        for axis, letter in enumerate("xy"):
+            yield f"{name}.{letter}", moved[:, number, axis]
+
+
+def _jumps(moved, u, names, rate) -> Iterator[str]:
+    for name, values in _signals(moved, u, names):
+        steps = np.abs(np.diff(values))
+        usual = np.quantile(steps, 0.99)
+        at = int(np.argmax(steps))
+        if usual > 0 and steps[at] > JUMP * usual:
+            yield (
+                f"{name} jumps by {steps[at]:.3g} at {(at + 1) / rate:.4g} s, "
+                f"{steps[at] / usual:.0f} times its larger steps"
+            )
+
+
+def _drifts(moved, u, names) -> Iterator[str]:
+    tenth = max(1, len(u) // 10)
+    for name, values in _signals(moved, u, names):
+        spread = max(values[:tenth].std(), values[-tenth:].std())
+        off = values[-tenth:].mean() - values[:tenth].mean()
+        if abs(off) > DRIFT * spread > 0:
+            yield f"{name} drifts by {off:.3g}, {abs(off) / spread:.1f} standard deviations"
+
+
+def _clipped(moved, u, names) -> Iterator[str]:
+    for name, values in _signals(moved, u, names):
+        for end, what in ((values.max(), "greatest"), (values.min(), "least")):
+            at = values == end
+            held = (at[1:] & at[:-1]).mean()
+            if CLIPPED < held < 1 and len(np.unique(values[:LONGEST])) > LEVELS:
+                yield f"{name} stays at its {what} value in {at.mean():.0%} of the frames"
+
+
+def _lag(moved, u, rate) -> Finding:
+    """How far the markers follow the input, where their cross-correlation is greatest."""
+    u = u[-LONGEST:]
+    reach = min(round(LAG * rate), len(u) // 4)
+    total = np.zeros(2 * reach + 1)
+    drive = signal.detrend(u)
+    for number in range(moved.shape[1]):
+        for axis in range(2):
+            motion = signal.detrend(moved[-LONGEST:, number, axis])
+            if not (spread := drive.std() * motion.std() * len(u)):
+                continue
+            across = signal.correlate(motion, drive, "full", "fft") / spread
+            total += across[len(u) - 1 - reach : len(u) + reach] ** 2
+    lag = int(np.argmax(total)) - reach
+    sentence = (
+        f"the markers follow the input by {lag} frames ({1e3 * lag / rate:.3g} ms), where their "
+        "correlation is greatest"
+    )
+    if lag >= 0:
+        return Finding("lag", "ok", sentence)
+    return Finding(
+        "lag", "warning",
+        f"the markers are {-lag} frames ({-1e3 * lag / rate:.3g} ms) ahead of the input, where "
+        "their correlation is greatest: its clock may be late by as much",
+    )  # fmt: skip

@@ -1,0 +1,128 @@
+"""From a file to the Dataset that a simulation gives."""
+
+from __future__ import annotations
+
+import json
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from pydantic import ValidationError
+
+from fiberweb.arguments import check_names, plain
+from fiberweb.errors import sentence
+from fiberweb.model.readouts import AXES
+from fiberweb.recordings import READERS, checks, clock
+from fiberweb.recordings.base import LENGTHS, Finding, driven, head
+from fiberweb.recordings.options import Reading
+
+
+def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
+    """See `fiberweb.recordings.read_recording`."""
+    check_names(options, [*Reading.model_fields, "quiet"])
+    path = Path(path)
+    try:
+        chosen = Reading(**plain(options))
+    except ValidationError as error:
+        raise ValueError(sentence(error)) from None
+    try:
+        raw = _reader(path, chosen).read(path, chosen)
+    except ValueError as error:
+        if str(path) in str(error):
+            raise
+        raise ValueError(f"{path} cannot be read ({error})") from None  # a library's own words
+    found = list(raw.findings)
+    time, rate, more = clock.frames(raw, chosen, path)
+    found += more
+    _take_input(raw, chosen, path)
+    column = raw.columns.get("input", chosen.input or "input")
+    if np.nanmin(raw.input) == np.nanmax(raw.input):
+        raise ValueError(
+            f"{path}, column {column!r}: the input is {np.nanmin(raw.input):g} in every frame "
+            f"({raw.place(0)} on); name an input that varies"
+        )
+    time, positions, u, more = clock.even(raw, time, rate, chosen, path)
+    found += more + checks.exchanges(positions, raw.names, rate)
+    units = chosen.units or raw.units or "px"
+    rest = positions[0].copy()
+    positions -= rest
+    if LENGTHS[units] != 1.0:
+        positions *= LENGTHS[units]
+        rest *= LENGTHS[units]
+    found += checks.look(positions, u, raw.names, rate)
+    unit = {"units": "px" if units == "px" else "m"}
+    response = xr.Dataset(
+        {
+            "input": ("time", u),
+            "displacement": (("time", "readout", "axis"), positions, unit),
+        },
+        {
+            "time": ("time", time, {"units": "s"}),
+            "axis": list(AXES),
+            "readout": raw.names,
+            "rest_x": ("readout", rest[:, 0], unit),
+            "rest_y": ("readout", rest[:, 1], unit),
+        },
+        {
+            "status": "ok", "setup": "recording", "sample_rate": float(rate), "run": path.stem,
+            "source": path.name, "sanity": json.dumps(found),
+        },
+    )  # fmt: skip
+    if not quiet:
+        print(f"{path}:", *(f"  {f.severity:8}{f.name}: {f.sentence}" for f in found), sep="\n")
+    return response
+
+
+def attempt(path: str | Path, options: dict) -> xr.Dataset:
+    """`read`, or what stands for a recording that is refused: a Dataset with nothing in it but the
+    attributes status 'refused', sanity and the names."""
+    try:
+        return read(path, False, options)
+    except ValueError as error:
+        return _refused(path, str(error))
+
+
+def _refused(path: str | Path, reason: str) -> xr.Dataset:
+    print(reason)
+    found = [Finding("file", "refused", reason)]
+    attrs = {"status": "refused", "setup": "recording", "run": Path(path).stem}
+    return xr.Dataset(attrs=attrs | {"source": Path(path).name, "sanity": json.dumps(found)})
+
+
+def listed(response: xr.Dataset) -> pd.DataFrame:
+    """See `fiberweb.recordings.sanity`."""
+    return pd.DataFrame(json.loads(response.attrs["sanity"]), columns=Finding._fields)
+
+
+def _reader(path: Path, options: Reading):
+    """The module that reads a file; ValueError, one sentence, if no format is recognised."""
+    first = head(path)
+    if options.format:
+        return import_module(READERS[options.format])
+    for name in READERS.values():
+        if (module := import_module(name)).recognises(path, first):
+            return module
+    raise ValueError(
+        f"{path} is of no format that is known: say format: {', '.join(READERS)}, or export a CSV"
+    )
+
+
+def _take_input(raw, options: Reading, path: Path) -> None:
+    """Where the input is the motion of a marker: that marker is driven, and is no readout."""
+    if raw.input is not None:
+        return
+    found = driven(options.input, raw.names, options.plane)
+    if found is None:
+        names = ", ".join(raw.names[:10])
+        raise ValueError(
+            f"{path}: input = {options.input!r} names no marker and coordinate: give one such as "
+            f"{raw.names[0]}.{options.plane[0]}; the markers are {names}"
+        )
+    number, axis = found
+    raw.input = raw.positions[:, number, axis].copy()
+    raw.positions = np.delete(raw.positions, number, axis=1)
+    raw.names = [name for name in raw.names if name != raw.names[number]]
+    if not raw.names:
+        raise ValueError(f"{path}: its only marker is the input; a readout is needed as well")

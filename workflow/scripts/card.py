@@ -1,0 +1,17 @@
+"""The score card of one recording: table, JSON and figure."""
+
+import json
+from pathlib import Path
+
+from logs import to_log
+
+from fiberweb import products
+from fiberweb.figures.card import draw
+from fiberweb.scoring.card import attempt
+
+to_log(snakemake)
+card = attempt(products.read(snakemake.input[0]), snakemake.params.options)
+print(card)
+products.write(card.scores, snakemake.output.table)
+Path(snakemake.output.json).write_text(json.dumps(card.as_dict(), indent=1), encoding="utf-8")
+draw(card.as_dict(), snakemake.output.png)

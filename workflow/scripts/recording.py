@@ -1,0 +1,12 @@
+"""One recording, read and looked at."""
+
+from logs import to_log
+
+from fiberweb import products
+from fiberweb.recordings import sanity
+from fiberweb.recordings.read import attempt
+
+to_log(snakemake)
+response = attempt(snakemake.params.path, snakemake.params.options)
+products.write(response, snakemake.output.response)
+products.write(sanity(response), snakemake.output.sanity)
