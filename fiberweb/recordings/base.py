@@ -55,7 +55,7 @@ class Raw:
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "px": 1.0}  # in m; pixels stay pixels
 
 
-def head(path: Path, size: int = 1 << 16) -> bytes:
+def head(path: Path, size: int = 1 << 20) -> bytes:
     """The first bytes of a file.
 
     Raises:

@@ -146,10 +146,8 @@ def even(
     raw.positions = raw.input = None  # of ten million frames, a second copy would not fit
     if len(kept) < len(raw.names):
         values, raw.names = values[:, kept], [raw.names[number] for number in kept]
-    if not as_it_is and count != len(values):
-        filled = np.empty((count, *values.shape[1:]))
-    else:
-        filled = values
+    # in place where that is possible
+    filled = values if count == len(values) else np.empty((count, *values.shape[1:]))
     clock = time[first : last + 1] - start
     for number in range(values.shape[1]):
         for axis in range(2):
@@ -220,9 +218,7 @@ def _clock_finding(count: int, length: float, rate: float, jitter: float) -> Fin
 def _gap_finding(seen: _Seen, count: int, added: int, as_it_is: bool) -> Finding:
     parts = []
     if seen.hidden:
-        parts.append(
-            f"{seen.hidden} points not seen, the longest for {seen.longest:.3g} s"
-        )  # fmt: skip
+        parts.append(f"{seen.hidden} points not seen, the longest for {seen.longest:.3g} s")
     if added > 0:
         parts.append(f"{added} frames missing")
     if not parts:

@@ -31,22 +31,20 @@ def read(path: Path, options: Reading) -> Raw:
     text = texts.sniff(path)
     facts = dict(zip(text.lines[0][::2], text.lines[0][1::2], strict=False))
     rows = {row[1].strip(): row for row in text.lines[1:8] if len(row) > 1 and row[1].strip()}
-    last = next(
-        (n for n, row in enumerate(text.lines) if row and row[0].strip() == "Frame"), None
-    )  # fmt: skip
+    last = next((n for n, row in enumerate(text.lines) if row[:1] == ["Frame"]), None)
     if last is None or not {"Type", "Name"} <= set(rows):
         raise ValueError(f"{path} has no rows Type, Name and Frame as Motive writes them")
     axes, kinds, titles = text.lines[last], text.lines[last - 1], rows["Name"]
     where = {}
-    for number, axis in enumerate(axes):
-        is_marker = number < len(rows["Type"]) and rows["Type"][number] in TYPES
-        if is_marker and kinds[number] == "Position" and axis in ("X", "Y", "Z"):
-            where.setdefault(titles[number], {})[axis.lower()] = number
+    columns = zip(rows["Type"], titles, kinds, axes, strict=False)
+    for number, (kind, name, what, axis) in enumerate(columns):
+        if kind in TYPES and what == "Position" and axis in ("X", "Y", "Z"):
+            where.setdefault(name, {})[axis.lower()] = number
+    where = {name: xyz for name, xyz in where.items() if len(xyz) == 3}
     if not where:
         raise ValueError(f"{path} has no column of type Marker; export markers from Motive")
     wanted = {f"{name}.{axis}": n for name, xyz in where.items() for axis, n in xyz.items()}
-    has_time = TIME in axes
-    if has_time:
+    if TIME in axes:
         wanted[TIME] = axes.index(TIME)
     columns, first_row = texts.numbers(text, wanted, last + 1, len(axes))
     positions = np.stack(

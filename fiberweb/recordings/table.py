@@ -28,7 +28,7 @@ def read(path: Path, options: Reading) -> Raw:
         ValueError: one sentence with file, column and row.
     """
     text = texts.sniff(path)
-    skip = next(number for number, row in enumerate(text.lines) if any(map(str.strip, row)))
+    skip = next((n for n, row in enumerate(text.lines) if any(map(str.strip, row))), 0)
     header = [cell.strip() for cell in text.lines[skip]]
     if twice := texts.duplicated(header):
         texts.find(text, header, twice[0], "markers")  # refuses it

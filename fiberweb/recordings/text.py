@@ -50,7 +50,7 @@ def sniff(path: Path) -> Text:
     lines = text.split("\n")[:20]
     header = next((line for line in lines if line.strip()), "")
     separator = max("\t;,", key=header.count)
-    cells = [row for row in csv.reader(lines, delimiter=separator)]
+    cells = list(csv.reader(lines, delimiter=separator))
     decimal = "."
     values = [cell.strip() for row in cells[1:] for cell in row]
     if separator != "," and any(_decimal_comma(value) for value in values):
@@ -104,7 +104,7 @@ def find(text: Text, header: list[str], name: str, key: str) -> int:
         return found[0]
     if found:
         raise ValueError(
-            f"{text.path} has {len(found)} columns {name!r} in row 1, numbers "
+            f"{text.path}: its header has {len(found)} columns {name!r}, numbers "
             f"{', '.join(str(n + 1) for n in found)}: give each a name of its own"
         )
     raise ValueError(f"{text.path}: {key}: {unknown_key(name, header, kind='column')}")

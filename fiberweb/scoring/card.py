@@ -106,6 +106,9 @@ def card(response: xr.Dataset, **options) -> Card:
     start = max(int(chosen.washout * len(u)), horizon, (chosen.taps or 1) - 1)
     check_frames(len(u) - start + horizon, rate, chosen.horizon, chosen.split)
     fitted = slice(start, training_end(start, len(u), chosen.split))
+    for part, where in {"training": fitted, "test": slice(fitted.stop, None)}.items():
+        if not np.ptp(u[where]):
+            raise ValueError(f"the input does not change in the {part} part; cut the recording")
     x, scaled = x[:, _different(x[fitted])], scale_input(u)
     targets, refused = _targets(scaled, horizon, chosen)
     taps = chosen.taps or _remembered(scaled, x, fitted, chosen, horizon)

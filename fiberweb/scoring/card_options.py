@@ -48,8 +48,5 @@ class CardOptions(Section):
     def settled(self) -> CardOptions:
         """The options with what the recipe says of those that were not given."""
         recipe = RECIPES.get(self.recipe, {})
-        return self.model_copy(update={k: v for k, v in recipe.items() if k not in self.given})
-
-    @property
-    def given(self) -> set[str]:
-        return self.model_fields_set
+        given = self.model_fields_set
+        return self.model_copy(update={k: v for k, v in recipe.items() if k not in given})

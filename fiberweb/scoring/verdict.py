@@ -52,7 +52,9 @@ def verdict(quantities: Mapping[str, Mapping[str, tuple]], facts: Mapping) -> st
         if better:
             return f"The body computes more than {than}: {', '.join(better)}."
         return f"The body computes nothing that {than} does not compute as well."
-    by_value = f"by value alone it is ahead in {', '.join(better)}" if better else "by value, no"
+    by_value = f"by value alone it is ahead in {', '.join(better)}"
+    if not better:
+        by_value = "by value alone it is ahead in nothing"
     return (
         f"{facts['blocks']} blocks of {facts['horizon_s']:g} s are too few to tell whether the "
         f"body computes more than {than}; {by_value}."

@@ -69,7 +69,7 @@ REFUSED = {
     ),
     "negative rate": (lambda p: p, {"rate": -60.0}, ["rate = -60.0", "greater than 0"]),
     "column twice": (
-        lambda p: edited(p, ("b_x", "a_x")), {}, ["2 columns 'a_x' in row 1, numbers 3, 5"],
+        lambda p: edited(p, ("b_x", "a_x")), {}, ["its header has 2 columns 'a_x', numbers 3, 5"],
     ),
     "header again": (
         lambda p: rows(p, lambda s: [*s[:100], s[0], *s[100:]]), {},

@@ -195,6 +195,14 @@ def test_a_card_is_json_and_prints(made):
     assert made.verdict in str(made) and "narma10_nmse" in str(made)
 
 
+@pytest.mark.parametrize(("rows", "part"), [(np.s_[:800], "training"), (np.s_[700:], "test")])
+def test_an_input_that_stops_is_refused(computing, rows, part):
+    stopped = computing["input"].copy()
+    stopped[rows] = 0.3
+    with pytest.raises(ValueError, match=f"the input does not change in the {part} part"):
+        card(computing.assign(input=stopped))
+
+
 @pytest.mark.parametrize(
     ("change", "options", "words"),
     [
