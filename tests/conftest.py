@@ -11,11 +11,13 @@ def unsaved(monkeypatch):
     monkeypatch.setattr(style, "save", lambda figure, path: None)
 
 
-@pytest.hookimpl(tryfirst=True)  # pytest-xdist reads the groups in the same hook
-def pytest_collection_modifyitems(items):
+def pytest_itemcollected(item):
     """For pytest-xdist: tests of a file run in one process, which makes what they share once; so do
-    all of the copied tree, which come first because they take longest."""
-    for item in items:
-        group = "tree" if "tree" in item.fixturenames else item.path.as_posix()
-        item.add_marker(pytest.mark.xdist_group(group))
+    all of the copied tree."""
+    group = "tree" if "tree" in item.fixturenames else item.path.as_posix()
+    item.add_marker(pytest.mark.xdist_group(group))
+
+
+def pytest_collection_modifyitems(items):
+    """Those of the copied tree come first, because they take longest."""
     items.sort(key=lambda item: "tree" not in item.fixturenames)
