@@ -4,6 +4,8 @@ import pytest
 
 from fiberweb.figures import style
 
+WORKFLOW = "tests/workflow/"
+
 
 @pytest.fixture
 def unsaved(monkeypatch):
@@ -11,13 +13,18 @@ def unsaved(monkeypatch):
     monkeypatch.setattr(style, "save", lambda figure, path: None)
 
 
-def pytest_itemcollected(item):
-    """For pytest-xdist: tests of a file run in one process, which makes what they share once; so do
-    all of the copied tree."""
-    group = "tree" if "tree" in item.fixturenames else item.path.as_posix()
-    item.add_marker(pytest.mark.xdist_group(group))
-
-
 def pytest_collection_modifyitems(items):
-    """Those of the copied tree come first, because they take longest."""
-    items.sort(key=lambda item: "tree" not in item.fixturenames)
+    """The workflow's tests come first, because they take longest."""
+    items.sort(key=lambda item: not item.nodeid.startswith(WORKFLOW))
+
+
+def pytest_xdist_make_scheduler(config, log):
+    """Of two processes, one runs all tests of a file, and one all of the workflow, so that what they
+    share is made once. (pytest-xdist 3.8 has groups for this, which pytest 9.2 does not heed.)"""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Together(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            return WORKFLOW if nodeid.startswith(WORKFLOW) else nodeid.split("::")[0]
+
+    return Together(config, log)
