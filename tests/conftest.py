@@ -20,7 +20,7 @@ def pytest_collection_modifyitems(items):
 
 def pytest_xdist_make_scheduler(config, log):
     """Of two processes, one runs all tests of a file, and one all of the workflow, so that what
-    they share is made once. (pytest-xdist 3.8 has groups for it, which pytest 9.2 does not heed.)"""
+    they share is made once. pytest-xdist 3.8 has groups for it, which pytest 9.2 does not heed."""
     from xdist.scheduler import LoadScopeScheduling
 
     class Together(LoadScopeScheduling):
