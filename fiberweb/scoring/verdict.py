@@ -52,8 +52,8 @@ def verdict(quantities: Mapping[str, Mapping[str, tuple]], facts: Mapping) -> st
         if better:
             return f"The body computes more than {than}: {', '.join(better)}."
         return (
-            f"As far as {facts['tested_s']:.3g} s of test part tell, the body computes nothing that "
-            f"{than} does not compute as well."
+            f"As far as {facts['tested_s']:.3g} s of test part tell, the body computes nothing "
+            f"that {than} does not compute as well."
         )
     by_value = f"by value alone it is ahead in {', '.join(better)}"
     if not better:

@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 
 from fiberweb import read_recording, score
-from fiberweb.recordings import READERS, sanity
+from fiberweb.recordings import READERS, Reader, sanity
 from fiberweb.simulation import dataset
 from tests.recordings import files
 from tests.recordings.files import RATE, body, names
@@ -238,7 +238,7 @@ def test_the_format_of_the_page_on_extending(tmp_path, made, monkeypatch):
     (code,) = re.findall(r"```python\n(.*?)```", section, re.DOTALL)
     (tmp_path / "npz_format.py").write_text(code)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setitem(READERS, "npz", "npz_format")
+    monkeypatch.setitem(READERS, "npz", Reader("npz_format", (".npz",)))
     _, u, positions = made
     np.savez(tmp_path / "film.npz", u=u, points=positions)
     path, options = tmp_path / "film.npz", {"rate": RATE, "input": "u", "markers": "points"}
