@@ -12,11 +12,12 @@ from typing import Annotated, NamedTuple
 from pydantic import BeforeValidator
 
 from fiberweb.folders import folder
+from fiberweb.recordings import READERS
 from fiberweb.recordings.options import Reading
 from fiberweb.scoring.card_options import CardOptions
 from fiberweb.sections import Section, key
 
-SUFFIXES = {".csv", ".tsv", ".txt", ".dat", ".mat", ".nc", ".h5", ".hdf5"}
+SUFFIXES = {suffix for reader in READERS.values() for suffix in reader.suffixes}
 Place = Annotated[str, BeforeValidator(lambda value: folder(value, "recordings.path"))]
 
 

@@ -150,6 +150,8 @@ def _tasks(ax: Axes, scores: pd.DataFrame, facts: Mapping) -> None:
     ax.set_xlim(-0.5, max(len(labels), 1) - 0.5)
     if facts["bar"]:
         ax.axhline(facts["bar"], **plots.BASELINE_LINE)
+    if quantities:
+        plots.logarithmic(ax.yaxis)
     panels.letter(ax, "d", "tasks")
 
 

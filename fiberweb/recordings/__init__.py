@@ -8,14 +8,24 @@ its format, and ``read(path, options)``, which gives a `fiberweb.recordings.base
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+
+class Reader(NamedTuple):
+    """Where a format is read, and how its files end in a folder of recordings."""
+
+    module: str
+    suffixes: tuple[str, ...]
+
+
 READERS = {  # a file is of the first format that recognises it
-    "deeplabcut": "fiberweb.recordings.deeplabcut",
-    "motive": "fiberweb.recordings.motive",
-    "trackpy": "fiberweb.recordings.trackpy",
-    "openprc": "fiberweb.recordings.openprc",
-    "matlab": "fiberweb.recordings.matlab",
-    "netcdf": "fiberweb.recordings.netcdf",
-    "table": "fiberweb.recordings.table",
+    "deeplabcut": Reader("fiberweb.recordings.deeplabcut", (".csv",)),
+    "motive": Reader("fiberweb.recordings.motive", (".csv",)),
+    "trackpy": Reader("fiberweb.recordings.trackpy", (".csv",)),
+    "openprc": Reader("fiberweb.recordings.openprc", (".h5", ".hdf5")),
+    "matlab": Reader("fiberweb.recordings.matlab", (".mat",)),
+    "netcdf": Reader("fiberweb.recordings.netcdf", (".nc",)),
+    "table": Reader("fiberweb.recordings.table", (".csv", ".tsv", ".txt", ".dat")),
 }
 
 

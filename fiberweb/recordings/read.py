@@ -100,9 +100,9 @@ def _reader(path: Path, options: Reading):
     """The module that reads a file; ValueError, one sentence, if no format is recognised."""
     first = head(path)
     if options.format:
-        return import_module(READERS[options.format])
-    for name in READERS.values():
-        if (module := import_module(name)).recognises(path, first):
+        return import_module(READERS[options.format].module)
+    for reader in READERS.values():
+        if (module := import_module(reader.module)).recognises(path, first):
             return module
     raise ValueError(
         f"{path} is of no format that is known: say format: {', '.join(READERS)}, or export a CSV"

@@ -9,16 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
+from fiberweb.recordings import READERS
 from fiberweb.recordings import text as texts
 from fiberweb.recordings.base import Raw, driven
 from fiberweb.recordings.options import Reading
 
-SUFFIXES = (".csv", ".tsv", ".txt", ".dat")
 TIMES = {"time": None, "time_s": "s", "time_ms": "ms", "time (s)": "s", "time (ms)": "ms"}
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    return path.suffix.lower() in SUFFIXES
+    return path.suffix.lower() in READERS["table"].suffixes
 
 
 def read(path: Path, options: Reading) -> Raw:

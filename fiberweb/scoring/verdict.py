@@ -51,7 +51,10 @@ def verdict(quantities: Mapping[str, Mapping[str, tuple]], facts: Mapping) -> st
     if told:
         if better:
             return f"The body computes more than {than}: {', '.join(better)}."
-        return f"The body computes nothing that {than} does not compute as well."
+        return (
+            f"As far as {facts['tested_s']:.3g} s of test part tell, the body computes nothing "
+            f"that {than} does not compute as well."
+        )
     by_value = f"by value alone it is ahead in {', '.join(better)}"
     if not better:
         by_value = "by value alone it is ahead in nothing"

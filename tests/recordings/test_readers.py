@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 
 from fiberweb import read_recording, score
-from fiberweb.recordings import READERS, sanity
+from fiberweb.recordings import READERS, Reader, sanity
 from fiberweb.simulation import dataset
 from tests.recordings import files
 from tests.recordings.files import RATE, body, names
@@ -165,6 +165,17 @@ def test_motive_without_a_clock_has_the_rate_of_its_first_line(tmp_path, made, b
     assert response["displacement"].attrs["units"] == "m"
 
 
+def test_a_marker_that_motive_did_not_see_is_filled_in(tmp_path, made):
+    time, u, positions = made
+    hidden = positions.copy()
+    hidden[40:43, 2] = np.nan
+    path = files.motive(tmp_path / "film.csv", time, u, hidden)
+    response = read_recording(path, quiet=True, input="motor.x", plane="xz")
+    line = np.linspace(positions[39, 2], positions[43, 2], 5) - positions[0, 2]
+    np.testing.assert_allclose(response["displacement"][39:44, 2], 1e-3 * line, atol=1e-9)
+    assert "3 points not seen" in " ".join(sanity(response)["sentence"])
+
+
 def test_an_uneven_clock_is_made_even(tmp_path):
     rng = np.random.default_rng(5)
     time = np.arange(400) / RATE + 0.2 / RATE * rng.uniform(-1, 1, 400)
@@ -227,7 +238,7 @@ def test_the_format_of_the_page_on_extending(tmp_path, made, monkeypatch):
     (code,) = re.findall(r"```python\n(.*?)```", section, re.DOTALL)
     (tmp_path / "npz_format.py").write_text(code)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setitem(READERS, "npz", "npz_format")
+    monkeypatch.setitem(READERS, "npz", Reader("npz_format", (".npz",)))
     _, u, positions = made
     np.savez(tmp_path / "film.npz", u=u, points=positions)
     path, options = tmp_path / "film.npz", {"rate": RATE, "input": "u", "markers": "points"}

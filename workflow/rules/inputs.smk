@@ -1,4 +1,5 @@
-# What the rules of studies and claims take as input and parameters, by what `fiberweb.studies` says.
+# What the rules of studies, claims and recordings take as input and parameters, by what
+# `fiberweb.studies` and the config say.
 
 import csv
 
@@ -66,6 +67,14 @@ def figure_options(wildcards):
 def authors_tables():
     folder = CONFIG.published_tables
     return sorted(glob(f"{folder}/*.csv")) if folder else []
+
+
+def cards(wildcards):
+    """All that is made of the recordings."""
+    if not RECORDED:
+        raise WorkflowError("the config lists no recordings: docs/recordings.md says how it does")
+    files = ("sanity.csv", "card.csv", "card.json", "card.png")
+    return [f"{RESULTS}/recordings/{name}/{file}" for name in RECORDED for file in files]
 
 
 def recorded_file(wildcards):

@@ -4,11 +4,7 @@
 
 rule recordings:
     input:
-        expand(
-            "<results>/recordings/{recording}/{file}",
-            recording=RECORDED,
-            file=("sanity.csv", "card.csv", "card.json", "card.png"),
-        ),
+        cards,
 
 
 rule recording:
