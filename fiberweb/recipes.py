@@ -10,13 +10,14 @@ through the deleted file then looks up to date, and the old figure stays.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 
 from fiberweb import source, studies
 from fiberweb.config import Config
 from fiberweb.runs import Run, runs
+from fiberweb.studies.base import Table
 
 SCRIPTS = source.ROOT.parent / "workflow" / "scripts"
 BEST = "ridge_best.csv"  # of a setup, like a study's table, but made by a checkpoint
@@ -65,6 +66,10 @@ class Recipes:
         made_by = code("capacity", "fiberweb.scoring.capacity", "fiberweb.simulation.dataset")
         return digest_of(made_by, self._runs[run].scoring, self.response(run))
 
+    def certified(self, spec: Table, chosen: Sequence[Run]) -> Sequence[Run]:
+        """Those of a table's runs whose certificates it is given."""
+        return chosen if spec.certificates and self._config.certify else []
+
     def certificate(self, run: str) -> str:
         """Of a run by its name."""
         made_by = code("certificate", "fiberweb.validation.certificate", "fiberweb.products")
@@ -89,9 +94,7 @@ class Recipes:
             [self.table(given, setup) for given in spec.tables],
             [self.capacity(name) for name in names] if spec.capacities else [],
             [self.response(name) for name in names] if spec.responses else [],
-            [self.certificate(name) for name in names if self._config.certify]
-            if spec.certificates
-            else [],
+            [self.certificate(run.name) for run in self.certified(spec, chosen)],
         )
 
     def figure(self, name: str, setup: str) -> str:

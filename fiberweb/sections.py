@@ -96,7 +96,6 @@ class SetupSection(Section):
         "",
         NETWORK,
     )
-
     layout: Literal["exact", "authors"] | None = key(
         None,
         "exact: crossings where the text has them, and a force in one point; authors: both on "

@@ -81,10 +81,9 @@ def load_polygon(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarr
     crossing of the first diameter."""
     network = scene.network
     fibre, line = network.driven_fibre, lines[network.driven_fibre]
-    split = (len(line.points) - 1) // round(line.along[-1] / ELEMENT)
-    beyond = sorted(node // split for node in line.crossing_nodes)
-    centre = round(line.along[-1] / ELEMENT) // 2
-    following = min(node for node in beyond if node > centre)
+    count = round(line.along[-1] / ELEMENT)
+    split, centre = (len(line.points) - 1) // count, count // 2
+    following = min(node // split for node in line.crossing_nodes if node > split * centre)
     load = np.zeros((first[-1], 2))
     load[first[fibre] + split * ((centre + following) // 2), 1] = scene.force
     return load

@@ -29,7 +29,8 @@ def ranks(readouts: np.ndarray, u: np.ndarray, fitted: slice, memory: int, step:
 
     Returns:
         ``n_signals``: p; ``rank``: of the standardised readouts, to round-off; ``effective_rank``:
-        exp of the entropy of the shares that the principal components have of the variance;
+        exp of the entropy of the shares that the principal components have of the variance, the
+        readouts as they are (`selection.effective_rank` standardises them first);
         ``kernel_rank`` and ``generalisation_rank``: see above, NaN of a recording too short for
         them, which has fewer than 2 p moments a step apart.
     """

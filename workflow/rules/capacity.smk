@@ -23,8 +23,7 @@ rule capacity:
 
 rule certificate:
     input:
-        response="<results>/runs/{run}/response.nc",
-        compiled="<results>/warmup.done",
+        "<results>/runs/{run}/response.nc",
     output:
         "<results>/runs/{run}/certificate.csv",
     log:

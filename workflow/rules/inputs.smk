@@ -27,8 +27,7 @@ def table_input(wildcards):
     _, spec, chosen = table_made(wildcards)
     files = {"tables": [table(file, wildcards.setup) for file in spec.tables]}
     files["capacities"] = [capacity(run) for run in chosen] if spec.capacities else []
-    certified = spec.certificates and CONFIG.certify
-    files["certificates"] = [certificate(run) for run in chosen] if certified else []
+    files["certificates"] = [certificate(run) for run in RECIPES.certified(spec, chosen)]
     files["responses"] = [response(run) for run in chosen] if spec.responses else []
     return files
 

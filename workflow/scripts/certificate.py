@@ -8,5 +8,5 @@ from fiberweb.validation.certificate import certificate
 to_log(snakemake)
 print("run", snakemake.wildcards.run)
 
-response = products.read(snakemake.input.response)
+response = products.read(snakemake.input[0])
 products.write(certificate(response, **snakemake.params.scoring), snakemake.output[0])
