@@ -57,7 +57,8 @@ class Run:
             network.topology,
             f"n{network.n:02d}",
             f"s{1e3 * network.spacing:.1f}mm",
-            f"f{1e3 * self.scene.force:.1f}mN",
+            f"x{1e3 * self.scene.stroke:.1f}mm" if self.scene.stroke
+            else f"f{1e3 * self.scene.force:.1f}mN",
             f"t{1e3 * self.scene.tension:.1f}mN",
             "" if self.scene.setup == "described" else self.scene.setup,
             hashlib.sha256(told_by.encode()).hexdigest()[:DIGITS],

@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fiberweb.engines import authors_rotations, energy, laplace, stepping
+from fiberweb.engines import authors_rotations, energy, laplace, stepping, ties, viscosity
 from fiberweb.engines import cosserat_passes as passes
 from fiberweb.engines.base import Numerics, Recording, record_in_chunks
 from fiberweb.engines.cosserat_stiffness import largest_step as largest_step
@@ -67,13 +67,14 @@ def integrate(mesh: Mesh, numerics: Numerics, watch: Callable | None = None) -> 
     read = stepping.build_readouts(*chain)
     state = _rest(layout, interleaving)
     stepping.displace(state, *chain)
-    blocks = packed(*np.zeros((8, len(state.x))))
-    scratch = passes.Scratch(*(block[timing.stride :] for block in blocks[:4]), *blocks[4:])
+    blocks = packed(*np.zeros((9, len(state.x))))
+    scratch = passes.Scratch(*(block[timing.stride :] for block in blocks[:5]), *blocks[5:])
+    tied = ties.build_ties(*chain)
     arguments = (
         state, scratch, *coefficients(*chain, timing.step), held_at_the_end(*chain),
-        stepping.build_guides(*chain),
+        stepping.build_guides(*chain), tied, viscosity.build_viscosity(*chain, order=2),
         laplace.build_filtering(*chain),
-        stepping.build_forcing(*chain), read,
+        stepping.build_forcing(*chain, ties.touched(tied, interleaving.stride)), read,
         energy.build_ledger(*chain, layout.mass[interleaving.nodes]), timing,
     )  # fmt: skip
 
@@ -114,8 +115,8 @@ def coefficients(
     mesh: Mesh, layout: Layout, interleaving: Interleaving, step: float
 ) -> tuple[passes.Rods, passes.Spin]:
     """What the passes multiply with, and what the ledger needs beside the nodes' masses."""
-    scene = mesh.scene
-    inertia = rotary_inertia(mesh) * layout.edge
+    scene, fibres = mesh.scene, mesh.scene.fibres
+    inertia = rotary_inertia(mesh)[layout.fibre[:-1]] * layout.edge
     uniform, stretched = rotation_damping(mesh, layout, inertia)
     kick = kick_before_decay(scene, step)
     kick_x, kick_y = kick * layout.free_x / layout.mass, kick * layout.free_y / layout.mass
@@ -123,7 +124,7 @@ def coefficients(
         kick_x[layout.at] = kick_y[layout.at] = kick / layout.mass[layout.at]
     over_nodes = (
         kick_x, kick_y,
-        scene.bending_stiffness * layout.bends / layout.span, 0.5 / layout.voronoi,
+        fibres.bending_stiffness[layout.fibre] * layout.bends / layout.span, 0.5 / layout.voronoi,
     )  # fmt: skip
     over_elements = (
         layout.edge, layout.solid / layout.edge, np.exp(-uniform * step), stretched * step
@@ -131,15 +132,22 @@ def coefficients(
     rods = passes.Rods(
         *packed(*(a[interleaving.nodes] for a in over_nodes)),
         *packed(*(a[interleaving.edges] for a in over_elements)),
-        axial=scene.axial_stiffness,
-        shear=shear_stiffness(mesh),
-        over_inertia=1.0 / rotary_inertia(mesh),
+        axial=_over_elements(fibres.axial_stiffness, layout, interleaving),
+        shear=_over_elements(shear_stiffness(mesh), layout, interleaving),
+        over_inertia=_over_elements(1.0 / rotary_inertia(mesh), layout, interleaving),
         decay=np.exp(-scene.damping * step),
         spin_kick=kick,
         dead_band=scene.dead_band,
     )
     edges = interleaving.edges
     return rods, passes.Spin((layout.solid * inertia)[edges], uniform[edges])
+
+
+def _over_elements(values: np.ndarray, layout: Layout, interleaving: Interleaving):
+    """What fibres have over their elements; one number if all have the same, which is quicker."""
+    if (values == values[0]).all():
+        return float(values[0])
+    return values[layout.fibre[interleaving.edges]]
 
 
 def kick_before_decay(scene: Scene, step: float) -> float:
@@ -175,7 +183,7 @@ def rotation_damping(mesh: Mesh, layout: Layout, inertia: np.ndarray):
 
 @entry
 def advance(
-    state, scratch, rods, spin, held, guides, filtering, forcing, readouts, ledger,
+    state, scratch, rods, spin, held, guides, tied, viscous, filtering, forcing, readouts, ledger,
     timing, first, out, energies,
 ):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
@@ -193,14 +201,18 @@ def advance(
     views = laplace.velocity_views(state, filtering, scratch.difference, stride)
     before = passes.Velocities(vx.copy(), vy.copy(), omega.copy())
     kicked = passes.Velocities(vx.copy(), vy.copy(), omega.copy())
-    every = energy.interval_steps(step)
+    carried, damped = tied.motor.nodes.shape[0] > 0, viscous.moment.shape[0] > 0
+    still = np.zeros(vx.shape[0])
+    since = ties.grown(forcing, first * per_sample, step)  # what u grew by in the step before
+    every = 1 if damped else energy.interval_steps(step)  # what is stiff dissipates by jerks
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
         stepping.record(state, readouts, 0.5 * step, out[sample])
         ramp = stepping.ramp_at(start * step, forcing.ramp_time)
         passes.record_energy(
-            energies[sample], state, rods, spin, forcing, readouts, ledger, timing, ramp
-        )
+            energies[sample], state, scratch, rods, spin, tied, forcing, readouts, ledger, timing,
+            ramp,
+        )  # fmt: skip
         if not stepping.in_bounds(vx, vy, limit):
             return sample
         if not dead_band:  # which is made of that drift
@@ -216,24 +228,47 @@ def advance(
                     )
                 ramp = grown
                 stepping.apply_pull(forcing, ramp, outer_x, outer_y)
-            passes.stress_pass(*stress, rods.axial, rods.shear, rods.over_inertia)
+            passes.stress_pass(*stress)
+            passes.bond_pass(tied.bonds, state, scratch, rods, stride)
             if dead_band:
                 authors_rotations.couple_pass(*banded_couple)
             else:
                 passes.couple_pass(*couple)
             u = stepping.drive_value(forcing.drive, forcing.drive_rate, time)
             passes.outer_forces(state, forcing, ledger, ramp, u, outer_x, outer_y)
+            ties.spring_forces(tied.springs, x, y, outer_x, outer_y)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
             due = energy.steps_due(k - start, every, per_sample)
             if due and filtered:
                 passes.copy_velocities(state, before)
+            if damped:
+                viscous.before_x[:], viscous.before_y[:] = vx, vy
+                viscous.before_spin[: omega.shape[0]] = omega
             passes.velocity_pass(*kick_x, rods.decay)
             passes.velocity_pass(*kick_y, rods.decay)
-            passes.spin_pass(*turn, rods.over_inertia, rods.spin_kick)
+            passes.spin_pass(*turn, rods.spin_kick)
+            if carried:
+                following = stepping.drive_value(forcing.drive, forcing.drive_rate, time + step)
+                ties.carry(tied.motor, x, y, vx, vy, following, step)
+            if damped:
+                viscosity.damp_elements(viscous, state, scratch, rods, stride)
+            if carried:
+                mean = 0.5 * (since + following - u)
+                work = ties.motor_work(
+                    tied.motor, scratch.force_x, scratch.force_y, outer_x, outer_y, mean, stride
+                )
+                if damped:
+                    work += ties.motor_work(
+                        tied.motor, viscous.force_x, viscous.force_y, still, still, mean, stride
+                    )
+                energy.enter_work(ledger, work)
+                since = following - u
             if due:
                 passes.copy_velocities(state, kicked)
                 passes.hold(kicked, held)
                 lost = passes.damper_power(kicked, spin, ledger)
+                if damped:
+                    lost += viscosity.elements_power(viscous, kicked, stride)
             if filtered:
                 laplace.filter_velocities(views, filtering, scratch.difference, stride)
             passes.hold(state, held)

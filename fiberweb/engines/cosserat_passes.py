@@ -13,8 +13,9 @@ from fiberweb.engines.energy import (
     pull_work,
     squared_speed,
 )
-from fiberweb.engines.jit import kernel, summing
+from fiberweb.engines.jit import kernel, of, part, summing
 from fiberweb.engines.laplace import REACH
+from fiberweb.engines.ties import spring_energy, turn_bonds
 
 
 class State(NamedTuple):
@@ -41,9 +42,10 @@ class Rods(NamedTuple):
     over_edge: np.ndarray  # 1 / edge on elements and 0 in gaps, which carries all that gaps lack
     spin_decay: np.ndarray  # of angular velocity over a step, at rest
     stretched: np.ndarray  # minus its logarithm's change by dilatation
-    axial: float  # EA, N
-    shear: float  # alpha_c G A, N
-    over_inertia: float  # 1 / (rho I), m / kg
+    # these three over elements if fibres differ
+    axial: float | np.ndarray  # EA, N
+    shear: float | np.ndarray  # alpha_c G A, N
+    over_inertia: float | np.ndarray  # 1 / (rho I), m / kg
     decay: float  # of a free velocity over a step
     spin_kick: float  # what an angular acceleration gives in a step, before it decays, s
     dead_band: bool  # rotations as in `authors_rotations`
@@ -69,7 +71,8 @@ class Scratch(NamedTuple):
     force_x: np.ndarray
     force_y: np.ndarray
     length: np.ndarray
-    acceleration: np.ndarray  # angular, from shear and stretching
+    acceleration: np.ndarray  # angular, from shear, stretching and bonds
+    torque: np.ndarray  # of the bonds
     couple: np.ndarray
     outer_x: np.ndarray  # pull, drive and crossings
     outer_y: np.ndarray
@@ -92,14 +95,15 @@ def pass_views(state, scratch, rods, s):
     out all ghosts before and after the chain but those that an element reaches.
     """
     x, y, vx, vy, angle, omega, c, sine = state
-    fx, fy, length, alpha, couple, outer_x, outer_y, _ = scratch
+    fx, fy, length, alpha, _, couple, outer_x, outer_y, _ = scratch
     kick_x, kick_y, bend, half_over_voronoi, edge, over_edge, spin_decay, stretched = rods[:8]
     low, high = (REACH - 1) * s, x.shape[0] - (REACH - 1) * s
     a, b = slice(low, high - s), slice(low + s, high)
     inner, before = slice(b.start, a.stop), slice(low, a.stop - s)
     return (
         (x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b], omega[a], c[a], sine[a], edge[a],
-         over_edge[a], fx[a], fy[a], length[a], alpha[a]),
+         over_edge[a], fx[a], fy[a], length[a], alpha[a], part(rods.axial, a),
+         part(rods.shear, a), part(rods.over_inertia, a)),
         (angle[before], angle[inner], length[before], length[inner], bend[inner],
          half_over_voronoi[inner], couple[inner]),
         (c[before], sine[before], c[inner], sine[inner], length[before], length[inner],
@@ -107,7 +111,7 @@ def pass_views(state, scratch, rods, s):
         (vx[inner], fx[before], fx[inner], outer_x[inner], kick_x[inner]),
         (vy[inner], fy[before], fy[inner], outer_y[inner], kick_y[inner]),
         (omega[a], alpha[a], couple[a], couple[b], length[a], over_edge[a], spin_decay[a],
-         stretched[a]),
+         stretched[a], part(rods.over_inertia, a)),
         (x[inner], vx[inner]),
         (y[inner], vy[inner]),
         (angle[a], omega[a], c[a], sine[a]),
@@ -127,8 +131,8 @@ def stress_pass(
         r = 1.0 / np.sqrt(q)
         o = over_edge[i]
         over_e = edge[i] * r
-        n3 = axial * ((dx * c[i] + dy * s[i]) * o - edge[i] * o)
-        ns = shear * ((dy * c[i] - dx * s[i]) * o)
+        n3 = of(axial, i) * ((dx * c[i] + dy * s[i]) * o - edge[i] * o)
+        ns = of(shear, i) * ((dy * c[i] - dx * s[i]) * o)
         nx = (n3 * c[i] - ns * s[i]) * over_e
         ny = (n3 * s[i] + ns * c[i]) * over_e
         fx[i] = nx
@@ -136,7 +140,7 @@ def stress_pass(
         length[i] = q * r
         couple = (dx * ny - dy * nx) * (q * r * o)
         rate = (dx * (vx1[i] - vx0[i]) + dy * (vy1[i] - vy0[i])) * (r * r)
-        alpha[i] = couple * (over_inertia * o) + omega[i] * rate
+        alpha[i] = couple * (of(over_inertia, i) * o) + omega[i] * rate
 
 
 @kernel
@@ -168,7 +172,7 @@ def spin_pass(
     """Kick and damp the angular velocities; the damper's power of dilatation as a series."""
     for i in range(omega.shape[0]):
         e = length[i] * over_edge[i]
-        bending = (couple1[i] - couple0[i]) * (e * over_edge[i] * over_inertia)
+        bending = (couple1[i] - couple0[i]) * (e * over_edge[i] * of(over_inertia, i))
         a = stretched[i] * (e - 1.0)
         less = decay[i] * (1.0 - a * (1.0 - a * (0.5 - a * (1.0 / 6.0))))
         omega[i] = (omega[i] + kick * (alpha[i] + bending)) * less
@@ -203,6 +207,10 @@ def outer_forces(state, forcing, ledger, ramp, u, outer_x, outer_y):
     x, y, vx, vy = state.x, state.y, state.vx, state.vy
     joints, stiffness, damping = ledger.joints, ledger.joint_stiffness, ledger.joint_damping
     nodes, pull_x, pull_y = forcing.nodes, forcing.pull_x, forcing.pull_y
+    for i in range(forcing.touched.shape[0]):
+        m = forcing.touched[i]
+        outer_x[m] = ramp * pull_x[m]
+        outer_y[m] = ramp * pull_y[m]
     for i in range(nodes.shape[0]):
         m = nodes[i]
         outer_x[m] = ramp * pull_x[m]
@@ -227,6 +235,18 @@ def outer_forces(state, forcing, ledger, ramp, u, outer_x, outer_y):
 
 
 @kernel
+def bond_pass(bonds, state, scratch, rods, stride):
+    """Add what bonds make of the angular accelerations."""
+    torque, alpha = scratch.torque, scratch.acceleration
+    if bonds.a.shape[0] > 0:
+        torque[:] = 0.0
+        turn_bonds(bonds, state.angle, torque, stride)
+        for i in range(torque.shape[0]):
+            e = scratch.length[i] * rods.over_edge[i]
+            alpha[i] += torque[i] * (e * rods.over_edge[i] * of(rods.over_inertia, i))
+
+
+@kernel
 def strain_energy(x, y, angle, rods, stride):
     """Elastic energy of the fibres (J): the potential of stretch, and of shear and bending to
     leading order in the stretch, whose factors in PyElastica's equations have none."""
@@ -240,8 +260,8 @@ def strain_energy(x, y, angle, rods, stride):
         along = (dx * c + dy * s) * over_edge[i]
         across = (dy * c - dx * s) * over_edge[i]
         if over_edge[i] > 0.0:
-            total += axial * edge[i] * (along - 1.0 - np.log(along))
-            total += 0.5 * shear * edge[i] * across * across
+            total += of(axial, i) * edge[i] * (along - 1.0 - np.log(along))
+            total += 0.5 * of(shear, i) * edge[i] * across * across
         if bend[i] > 0.0:
             e = (length[i - stride] + length[i]) * half_over_voronoi[i]
             total += 0.5 * bend[i] * (angle[i] - angle[i - stride]) ** 2 / (e * e * e)
@@ -268,12 +288,14 @@ def filter_loss(unfiltered, before, filtered, mass):
 
 
 @kernel
-def record_energy(row, state, rods, spin, forcing, readouts, ledger, stepping, ramp):
-    """Fill one row of the energies at a whole step."""
+def record_energy(row, state, scratch, rods, spin, ties, forcing, readouts, ledger, stepping, ramp):
+    """Fill one row of the energies at a whole step, with the angular accelerations as scratch."""
     vx, vy, omega, half = state.vx, state.vy, state.omega, 0.5 * stepping.step
     x, y, angle = state.x - half * vx, state.y - half * vy, state.angle - half * omega
     kinetic = 0.5 * squared_speed(vx, vy, ledger.mass) + 0.5 * squared_spin(omega, spin.inertia)
     elastic = strain_energy(x, y, angle, rods, stepping.stride) + joint_energy(ledger, x, y)
+    elastic += spring_energy(ties.springs, x, y)
+    elastic += turn_bonds(ties.bonds, angle, scratch.acceleration, stepping.stride)
     enter_sample(row, ledger, kinetic, elastic, ramp, pull_work(x, y, readouts, forcing))
 
 

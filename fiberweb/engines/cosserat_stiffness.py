@@ -8,6 +8,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.engines.stability import differences, leapfrog_limit
+from fiberweb.engines.ties import turn_stiffness
 from fiberweb.model.mesh import Mesh
 
 SHEAR_FACTOR = 27.0 / 28.0  # alpha_c of a round section at Poisson's ratio 1/2, as PyElastica's
@@ -19,17 +20,14 @@ def largest_step(mesh: Mesh) -> float:
     return leapfrog_limit(mesh, layout, *stiffness_and_mass(mesh, layout), exact_dampers=False)
 
 
-def shear_stiffness(mesh: Mesh) -> float:
-    """alpha_c G A (N), with G = E / 3, over the stoutness."""
-    return mesh.scene.axial_stiffness / 3.0 * SHEAR_FACTOR / mesh.stoutness
+def shear_stiffness(mesh: Mesh) -> np.ndarray:
+    """alpha_c G A of each fibre (N), with G = E / 3, over the stoutness."""
+    return mesh.scene.fibres.axial_stiffness / 3.0 * SHEAR_FACTOR / mesh.stoutness
 
 
-def rotary_inertia(mesh: Mesh) -> float:
-    """Of a fibre about its cross-section's diameter, per length (kg m): density times
-    `fiberweb.model.buckling.second_moment`, multiplied in the order that keeps earlier runs'
-    last bits, times the stoutness."""
-    scene = mesh.scene
-    return scene.density * np.pi * scene.diameter**4 / 64 * mesh.stoutness
+def rotary_inertia(mesh: Mesh) -> np.ndarray:
+    """Of each fibre about its cross-section's diameter, per length (kg m), times the stoutness."""
+    return mesh.scene.fibres.rotary_inertia * mesh.stoutness
 
 
 def stiffness_and_mass(mesh: Mesh, layout: Layout):
@@ -48,11 +46,14 @@ def stiffness_and_mass(mesh: Mesh, layout: Layout):
          (rows, np.r_[2 * size + bent, 2 * size + bent - 1])),
         shape=(len(bent), columns),
     )  # fmt: skip
-    scene = mesh.scene
+    fibres, of_edge = mesh.scene.fibres, layout.fibre[solid]
     strains = vstack([axial, lateral - angle, turn])
     moduli = np.r_[
-        scene.axial_stiffness / edge, shear_stiffness(mesh) / edge,
-        scene.bending_stiffness / layout.span[bent],
+        fibres.axial_stiffness[of_edge] / edge, shear_stiffness(mesh)[of_edge] / edge,
+        fibres.bending_stiffness[layout.fibre[bent]] / layout.span[bent],
     ]  # fmt: skip
-    inertia = rotary_inertia(mesh) * layout.edge
-    return strains.T @ diags_array(moduli) @ strains, np.r_[np.tile(layout.mass, 2), inertia]
+    inertia = rotary_inertia(mesh)[layout.fibre[:-1]] * layout.edge
+    stiffness = strains.T @ diags_array(moduli) @ strains
+    return stiffness + turn_stiffness(mesh, layout, columns), np.r_[
+        np.tile(layout.mass, 2), inertia
+    ]

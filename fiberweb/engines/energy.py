@@ -34,7 +34,10 @@ class Ledger(NamedTuple):
 def build_ledger(
     mesh: Mesh, layout: Layout, interleaving: Interleaving, mass: np.ndarray
 ) -> Ledger:
-    """An empty ledger; the mass of the nodes is in the order of the kernels."""
+    """An empty ledger; the mass of the nodes is in the order of the kernels. What a motor carries is
+    the motor's, and has none."""
+    mass = mass.copy()
+    mass[interleaving.place[layout.at[mesh.moved]]] = 0.0
     # unsigned, since Numba looks for negative indices at every access otherwise
     joints = interleaving.place[layout.joints].astype(np.uint64)
     rate = mesh.scene.damping
@@ -65,6 +68,12 @@ def enter_drive(ledger, forcing, half_impulse, vx, vy):
     for i in range(nodes.shape[0]):
         m = nodes[i]
         ledger.total[WORK] += half_impulse * (load_x[i] * vx[m] + load_y[i] * vy[m])
+
+
+@kernel
+def enter_work(ledger, work):
+    """Work that was done (J)."""
+    ledger.total[WORK] += work
 
 
 @kernel

@@ -32,10 +32,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import diags_array
 
-from fiberweb.engines import crossings, energy, stepping
+from fiberweb.engines import crossings, energy, stepping, ties, viscosity
 from fiberweb.engines import kirchhoff_passes as passes
 from fiberweb.engines.base import Numerics, Recording, record_in_chunks
-from fiberweb.engines.jit import entry
+from fiberweb.engines.jit import entry, kernel
 from fiberweb.engines.kirchhoff_stiffness import GAP, fourth_order_layout, spline_matrix
 from fiberweb.engines.kirchhoff_stiffness import largest_step as largest_step
 from fiberweb.engines.layout import Interleaving, Layout, interleave, lay_out, packed
@@ -89,10 +89,12 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
     state = passes.State(*packed(read.rest_x, read.rest_y, still, still))
     stepping.displace(state, *chain)
     (mass,) = packed(layout.mass[interleaving.nodes])
+    tied = ties.build_ties(*chain)
+    touched = ties.touched(tied, interleaving.stride)
     arguments = (
         state, _scratch(state, interleaving.stride), coefficients(*chain, timing.step, order),
-        *crossings.joint_operators(*chain, timing.step), stepping.build_guides(*chain),
-        stepping.build_forcing(*chain), read,
+        *crossings.joint_operators(*chain, timing.step), stepping.build_guides(*chain), tied,
+        viscosity.build_viscosity(*chain, order), stepping.build_forcing(*chain, touched), read,
         energy.build_ledger(*chain, mass), timing,
     )  # fmt: skip
 
@@ -117,8 +119,9 @@ def coefficients(
     """What the passes multiply with."""
     kick = stepping.damped_kick(mesh.scene.damping, step)
     matrix = diags_array(layout.span * layout.bends) + (order == 4) * spline_matrix(layout)
-    stiffness = mesh.scene.bending_stiffness * matrix
-    over_edges = mesh.scene.axial_stiffness * layout.solid, layout.edge
+    fibres = mesh.scene.fibres
+    stiffness = diags_array(fibres.bending_stiffness[layout.fibre]) @ matrix
+    over_edges = fibres.axial_stiffness[layout.fibre[:-1]] * layout.solid, layout.edge
     over_nodes = (
         layout.bends / layout.span, *(np.r_[stiffness.diagonal(k), np.zeros(k)] for k in range(3)),
         kick * layout.free_x / layout.mass, kick * layout.free_y / layout.mass,
@@ -133,16 +136,26 @@ def coefficients(
     return rods
 
 
+@kernel
+def tie(pairs, groups, relative, before, kicked, state, step):
+    """Change velocities and positions after the kick to what crossings make of them."""
+    x, y, vx, vy = state
+    crossings.pair_pass(pairs, relative, x, y, vx, vy, step)
+    crossings.group_pass(groups, before.vx, before.x, kicked, x, vx, step)
+    crossings.group_pass(groups, before.vy, before.y, kicked, y, vy, step)
+
+
 @entry
 def advance(
-    state, scratch, rods, pairs, groups, guides, forcing, readouts, ledger, timing,
+    state, scratch, rods, pairs, groups, guides, tied, viscous, forcing, readouts, ledger, timing,
     first, out, energies,
 ):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Args:
-        state, scratch, rods, pairs, groups, guides, forcing, readouts, ledger, timing: see the
-            classes of these names, and `Stepping` for the last.
+        state, scratch, rods, pairs, groups, guides, tied, viscous, forcing, readouts, ledger,
+            timing: see the classes of these names, `Ties`, `Viscosity` and, of the last,
+            `Stepping`.
         first: number of the first sample of `out`.
         out: displacement, (samples, readouts, 2), filled.
         energies: kinetic, elastic, work done, dissipated (samples, 4), filled.
@@ -159,14 +172,26 @@ def advance(
     relative = crossings.no_motion(pairs.a.shape[0])
     before, kicked = crossings.no_motion(groups.members.shape[0]), np.zeros(groups.members.shape[0])
     mean_x, mean_y = vx.copy(), vy.copy()
-    every = energy.interval_steps(step)
+    carried, damped = tied.motor.nodes.shape[0] > 0, viscous.moment.shape[0] > 0
+    merged = tied.merged
+    bonded, still = tied.bonds.a.shape[0] > 0, np.zeros(vx.shape[0])
+    since = ties.grown(forcing, first * per_sample, step)  # what u grew by in the step before
+    damping = viscosity.views(viscous, scratch, rods, state, stride)
+    n = len(viscous.force_x)
+    edge, behind = slice(0, n - stride), slice(stride, n)
+    power = (
+        viscous.force_x[edge], viscous.force_y[edge], mean_x[edge], mean_x[behind], mean_y[edge],
+        mean_y[behind],
+    )  # fmt: skip
+    every = 1 if damped else energy.interval_steps(step)  # what is stiff dissipates by jerks
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
         stepping.record(state, readouts, 0.5 * step, out[sample])
         ramp = stepping.ramp_at(start * step, forcing.ramp_time)
         pulled = passes.record_energy(
-            energies[sample], state, scratch, rods, forcing, readouts, ledger, timing, ramp
-        )
+            energies[sample], state, scratch, rods, tied, forcing, readouts, ledger, timing,
+            ramp,
+        )  # fmt: skip
         if not stepping.in_bounds(vx, vy, limit):
             return sample
         # between samples a growing pull holds its mean, and is entered where it changes
@@ -178,6 +203,9 @@ def advance(
         for k in range(start, start + per_sample):
             u = stepping.drive_value(forcing.drive, forcing.drive_rate, (k + 0.5) * step)
             stepping.apply_forces(forcing, held, u, outer_x, outer_y)
+            ties.spring_forces(tied.springs, x, y, outer_x, outer_y)
+            if bonded:
+                ties.chord_bonds(tied.bonds, x, y, outer_x, outer_y, stride)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
             passes.stretch_pass(*stretch)
             passes.turn_pass(*turn)
@@ -188,17 +216,44 @@ def advance(
             due = energy.steps_due(k - start, every, per_sample)
             if due:
                 mean_x[:], mean_y[:] = vx, vy
+            if damped:
+                viscous.before_x[:], viscous.before_y[:] = vx, vy
+            if carried:  # before the kick, which leaves them alone and drifts them
+                following = stepping.drive_value(
+                    forcing.drive, forcing.drive_rate, (k + 1.5) * step
+                )
+                ties.carry(tied.motor, x, y, vx, vy, following, step / rods.decay)
             passes.kick_pass(*kick_x, rods.decay, step)
             passes.kick_pass(*kick_y, rods.decay, step)
-            crossings.pair_pass(pairs, relative, x, y, vx, vy, step)
-            crossings.group_pass(groups, before.vx, before.x, kicked, x, vx, step)
-            crossings.group_pass(groups, before.vy, before.y, kicked, y, vy, step)
+            # What springs is to be in what viscous stresses follow, or the step would have a limit;
+            # nodes that are one point are brought together after them.
+            if not merged:
+                tie(pairs, groups, relative, before, kicked, state, step)
+            if damped:
+                viscosity.damp(viscous, damping, step, stride)
+                if not merged:
+                    crossings.gather_pairs(pairs, relative, x, y, vx, vy)
+            if merged:
+                tie(pairs, groups, relative, before, kicked, state, step)
+            if carried:
+                mean = 0.5 * (since + following - u)
+                work = ties.motor_work(
+                    tied.motor, scratch.tension, scratch.length, outer_x, outer_y, mean, stride
+                )
+                if damped:
+                    work += ties.motor_work(
+                        tied.motor, viscous.force_x, viscous.force_y, still, still, mean, stride
+                    )
+                energy.enter_work(ledger, work)
+                since = following - u
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
             if due:  # at the mean velocity, of which times the step a force's work is
                 mean_x[:], mean_y[:] = 0.5 * (mean_x + vx), 0.5 * (mean_y + vy)
                 lost = ledger.damping * energy.squared_speed(mean_x, mean_y, ledger.mass)
                 lost += energy.joint_power(ledger, mean_x, mean_y)
+                if damped:
+                    lost += viscosity.edge_power(*power)
                 energy.enter_dissipation(ledger, due * step, lost)
         if grown > ramp:
             pulled = energy.pull_work(x - 0.5 * step * vx, y - 0.5 * step * vy, readouts, forcing)

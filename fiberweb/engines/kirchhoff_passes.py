@@ -8,6 +8,7 @@ import numpy as np
 
 from fiberweb.engines.energy import enter_lag, enter_sample, joint_energy, pull_work, squared_speed
 from fiberweb.engines.jit import kernel
+from fiberweb.engines.ties import chord_bonds, spring_energy
 
 
 class State(NamedTuple):
@@ -179,11 +180,14 @@ def strain_energy(x, y, rods, scratch, s):
 
 
 @kernel
-def record_energy(row, state, scratch, rods, forcing, readouts, ledger, stepping, ramp):
-    """Fill one row of the energies at a whole step; returns the work of the whole pull (J)."""
+def record_energy(row, state, scratch, rods, ties, forcing, readouts, ledger, stepping, ramp):
+    """Fill one row of the energies at a whole step; returns the work of the whole pull (J). Outer
+    forces are to be set again after it."""
     vx, vy, half = state.vx, state.vy, 0.5 * stepping.step
     x, y = state.x - half * vx, state.y - half * vy
     elastic = strain_energy(x, y, rods, scratch, stepping.stride) + joint_energy(ledger, x, y)
+    elastic += spring_energy(ties.springs, x, y)
+    elastic += chord_bonds(ties.bonds, x, y, scratch.outer_x, scratch.outer_y, stepping.stride)
     pulled = pull_work(x, y, readouts, forcing)
     enter_sample(row, ledger, 0.5 * squared_speed(vx, vy, ledger.mass), elastic, ramp, pulled)
     enter_lag(row, ledger, stepping.step)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
+from fiberweb.engines import ties
 from fiberweb.engines.layout import Layout, lay_out
 from fiberweb.engines.stability import differences, leapfrog_limit
 from fiberweb.model.mesh import Mesh
@@ -34,7 +35,7 @@ def fourth_order_layout(mesh: Mesh) -> Layout:
         even = len(edges) > 3 and np.allclose(edges[-3:], edges[-1], rtol=1e-6)
         end = mesh.first[fibre + 1] - 1
         if even and not mesh.held[end].any() and end not in mesh.guided:
-            element = mesh.scene.density * mesh.scene.area * edges[-1]
+            element = mesh.scene.fibres.line_density[fibre] * edges[-1]
             mass[last - 2 : last + 1] += element * np.array([-1 / 24, 1 / 6, -1 / 8])
     return replace(layout, mass=mass)
 
@@ -69,10 +70,11 @@ def stiffness_and_mass(mesh: Mesh, layout: Layout):
     before = _rows(slope, np.arange(1, size), size)
     curvature = diags_array(layout.bends / layout.span) @ (after - before)
     spline = diags_array(layout.span * layout.bends) + spline_matrix(layout)
-    scene = mesh.scene
-    stretching = axial.T @ diags_array(scene.axial_stiffness / layout.edge[solid]) @ axial
-    bending = scene.bending_stiffness * (curvature.T @ spline @ curvature)
-    return stretching + bending, np.tile(layout.mass, 2)
+    fibres, of_node = mesh.scene.fibres, layout.fibre
+    stretching = fibres.axial_stiffness[of_node[solid]] / layout.edge[solid]
+    bending = diags_array(fibres.bending_stiffness[of_node]) @ spline
+    stiffness = axial.T @ diags_array(stretching) @ axial + curvature.T @ bending @ curvature
+    return stiffness + ties.stiffness(mesh, layout, lateral), np.tile(layout.mass, 2)
 
 
 def _rows(matrix, at: np.ndarray, rows: int) -> csr_array:

@@ -30,6 +30,7 @@ class Layout:
     y: np.ndarray
     edge: np.ndarray  # rest length of edges, (n - 1,), m; any positive number at gaps
     solid: np.ndarray  # 1 on elements and 0 on gaps, (n - 1,)
+    fibre: np.ndarray  # number of the fibre of each node, and of the edge after it, (n,)
     bends: np.ndarray  # 1 where a moment is carried and 0 where not, (n,)
     # rest length that a node's curvature spans, (n,), m: half of either element beside it, of the
     # one inside at a clamp; 1 where no moment is carried
@@ -52,6 +53,7 @@ def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
     size = len(mesh.position) + gap * (fibres + 1)
     number = np.repeat(np.arange(fibres), np.diff(mesh.first))
     at = np.arange(len(mesh.position)) + gap * (number + 1)
+    fibre_of = number[np.searchsorted(at, np.arange(size)).clip(max=len(at) - 1)]
     position = np.zeros((size, 2))
     position[at] = mesh.position
     edge, solid = np.ones(size - 1), np.zeros(size - 1)
@@ -75,7 +77,7 @@ def lay_out(mesh: Mesh, gap: int = 2) -> Layout:
     free, pull, load = ((*a.T,) for a in (~mesh.held, mesh.pull, mesh.load))
     x, y = position.T.copy()
     return Layout(
-        at, x, y, edge, solid, bends, span, voronoi, mass,
+        at, x, y, edge, solid, fibre_of, bends, span, voronoi, mass,
         *(_pad(at, size, values) for values in (*free, *pull, *load)),
         at[mesh.joints].reshape(-1, 2), at[mesh.guided],
     )  # fmt: skip

@@ -27,6 +27,7 @@ class Forcing(NamedTuple):
     drive: np.ndarray  # spline coefficients of u, (intervals, 4)
     drive_rate: float  # Hz
     ramp_time: float  # s, in which the pull grows
+    touched: np.ndarray  # nodes on which ties exert forces, (touched,)
     nodes: np.ndarray  # those that are driven, (driven,)
     load_x: np.ndarray  # N, on them for u = 1
     load_y: np.ndarray
@@ -57,15 +58,16 @@ def build_stepping(mesh: Mesh, numerics: Numerics, interleaving: Interleaving) -
     return Stepping(step, per_sample, RUNAWAY * mesh.scene.wave_speed, interleaving.stride)
 
 
-def build_forcing(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Forcing:
-    """Outer forces in the order of the kernels."""
+def build_forcing(
+    mesh: Mesh, layout: Layout, interleaving: Interleaving, touched: np.ndarray
+) -> Forcing:
+    """Outer forces in the order of the kernels; touched: see `fiberweb.engines.ties`."""
     load_x, load_y = layout.load_x[interleaving.nodes], layout.load_y[interleaving.nodes]
     driven = np.flatnonzero(load_x**2 + load_y**2)
     pull = packed(layout.pull_x[interleaving.nodes], layout.pull_y[interleaving.nodes])
-    scene = mesh.scene
     return Forcing(
-        mesh.drive, scene.drive_rate, scene.tension_ramp, driven, load_x[driven], load_y[driven],
-        *pull,
+        mesh.drive, mesh.drive_rate, mesh.scene.tension_ramp, touched, driven, load_x[driven],
+        load_y[driven], *pull,
     )  # fmt: skip
 
 
@@ -128,7 +130,12 @@ def apply_pull(forcing, ramp, outer_x, outer_y):
 
 @kernel
 def apply_forces(forcing, ramp, u, outer_x, outer_y):
-    """Set the outer force of the driven nodes: a share of the pull, and the drive."""
+    """Set the outer force of driven nodes and of those that ties are to push: a share of the pull,
+    and the drive."""
+    for i in range(forcing.touched.shape[0]):
+        m = forcing.touched[i]
+        outer_x[m] = ramp * forcing.pull_x[m]
+        outer_y[m] = ramp * forcing.pull_y[m]
     for i in range(forcing.nodes.shape[0]):
         m = forcing.nodes[i]
         outer_x[m] = ramp * forcing.pull_x[m] + u * forcing.load_x[i]

@@ -34,7 +34,7 @@ def cut(scene: Scene, target: float) -> list[Line]:
     for fibre, (near, far) in enumerate(network.fibres):
         ends = network.sections(fibre)
         lengths = np.diff(ends)
-        most = np.maximum(1, np.floor(lengths / (ELEMENT_FLOOR * scene.diameter))).astype(int)
+        most = np.maximum(1, np.floor(lengths / (ELEMENT_FLOOR * scene.thickest))).astype(int)
         # the limit is for the short sections of a polygon; a uniform mesh is the user's choice
         counts = np.maximum(1, np.round(lengths / target)).astype(int)
         if network.topology == "polygon":

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from fiberweb.arguments import whole
-from fiberweb.model import authors_mesh
+from fiberweb.model import authors_mesh, drive
 from fiberweb.model.authors import ELEMENT
-from fiberweb.model.drive import of_scene as drive_of
 from fiberweb.model.lines import Line, cut, nodes_about
+from fiberweb.model.network import Network
 from fiberweb.model.readouts import places
 from fiberweb.model.scene import Scene
 
@@ -44,8 +44,14 @@ class Mesh:
         joints: pairs of nodes tied by spring and damper, shape (joints, 2).
         joint_stiffness: shape (joints,), N/m; infinite: the nodes are one point.
         joint_damping: shape (joints,), N s/m.
-        drive: cubic coefficients of u on each knot interval, highest power first, shape
-            (intervals, 4); the interval is 1 / scene.drive_rate s long.
+        bond_stiffness: of springs that keep the angle between the fibres at each joint, shape
+            (joints,), N m.
+        sprung: nodes held by a spring along their fibre, shape (sprung,).
+        springs: its unit vector times the root of its stiffness, shape (sprung, 2), (N/m)^(1/2).
+        moved: nodes whose motion is given, shape (moved,).
+        path: their displacement for u = 1, shape (moved, 2), m.
+        drive: cubic coefficients of u on each interval, highest power first, shape (intervals, 4).
+        drive_rate: intervals per second (Hz).
         readouts: what is recorded.
         start: displacement at t = 0, shape (nodes, 2), m.
         stoutness: what rotary inertia and shear compliance are multiplied with, to see more of
@@ -64,7 +70,13 @@ class Mesh:
     joints: np.ndarray
     joint_stiffness: np.ndarray
     joint_damping: np.ndarray
+    bond_stiffness: np.ndarray
+    sprung: np.ndarray
+    springs: np.ndarray
+    moved: np.ndarray
+    path: np.ndarray
     drive: np.ndarray
+    drive_rate: float
     readouts: tuple[Readout, ...]
     start: np.ndarray
     stoutness: float = 1.0
@@ -81,10 +93,10 @@ class Mesh:
 
     def masses(self) -> np.ndarray:
         """Lumped mass of each node, shape (nodes,), kg."""
-        line_density = self.scene.density * self.scene.area
         mass = np.zeros(len(self.position))
+        line_density = self.scene.fibres.line_density
         for fibre, start in enumerate(self.first[:-1]):
-            half = 0.5 * line_density * self.edges(fibre)
+            half = 0.5 * line_density[fibre] * self.edges(fibre)
             mass[start : start + len(half)] += half
             mass[start + 1 : start + 1 + len(half)] += half
         return mass
@@ -101,7 +113,7 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
             in their layout, at least 50 elements per fibre.
 
     Raises:
-        ValueError: elements_per_section below 1.
+        ValueError: elements_per_section below 1, or no node where a stroke carries one.
     """
     if elements_per_section is not None:
         elements_per_section = whole("elements_per_section", elements_per_section, 1)
@@ -117,7 +129,11 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
     first = np.cumsum([0] + [len(line.points) for line in lines])
     joints, stiffness, damping = _joints(scene, lines, first)
     held, guided, guides, pull = _ends(scene, lines, first)
+    sprung, springs = _springs(scene, lines, first, pull)
     load = _load(scene, lines, first)
+    moved, path = _motor(scene, lines, first)
+    held[moved] = True
+    u = drive.of_scene(scene)
     return Mesh(
         scene=scene,
         position=position,
@@ -131,9 +147,15 @@ def build(scene: Scene, elements_per_section: int | None = None) -> Mesh:
         joints=joints,
         joint_stiffness=stiffness,
         joint_damping=damping,
-        drive=np.ascontiguousarray(drive_of(scene).c.T),
+        bond_stiffness=np.full(len(joints), scene.bond_stiffness),
+        sprung=sprung,
+        springs=springs,
+        moved=moved,
+        path=path,
+        drive=np.ascontiguousarray(u.c.T),
+        drive_rate=drive.rate(scene),
         readouts=_readouts(scene, lines, first),
-        start=load * (scene.disturbance / scene.force),
+        start=load * (scene.disturbance / scene.force) if scene.disturbance else 0.0 * load,
     )
 
 
@@ -170,25 +192,67 @@ def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
     network = scene.network
     held = np.zeros((first[-1], 2), dtype=bool)
     pull = np.zeros((first[-1], 2))
-    held[first[:-1]] = True
+    held[first[:-1]] = scene.ends != "sprung"
     slanted = {}
     pulled = range(len(lines))
     if scene.setup == "published":
         pulled = authors_mesh.pulled(network)
     for fibre, line in enumerate(lines):
         direction = (line.points[-1] - line.points[0]) / line.along[-1]
-        far = first[fibre + 1] - 1
-        if scene.ends == "sliding":
+        near, far = first[fibre], first[fibre + 1] - 1
+        for end in {"sliding": [far], "sprung": [near, far]}.get(scene.ends, []):
             if abs(direction).min() > 1e-12:
-                slanted[far] = direction
+                slanted[end] = direction
             else:
-                held[far] = abs(direction) < 0.5
+                held[end] = abs(direction) < 0.5
         if fibre in pulled:
             pull[far] = scene.tension * direction
-            if scene.setup == "published":
-                pull[first[fibre]] = -pull[far]  # on a held node, where only the filter sees it
+            # in the published setup on a held node, where only the filter sees it
+            if scene.setup == "published" or scene.ends == "sprung":
+                pull[near] = -pull[far]
     guided = np.array(list(slanted), dtype=np.int64)
     return held, guided, np.array([*slanted.values()]).reshape(-1, 2), pull
+
+
+def _springs(scene: Scene, lines: list[Line], first: np.ndarray, pull: np.ndarray):
+    """Nodes on springs, and these. What the springs give way when the fibres stretch under their
+    tension is added to the pull."""
+    if scene.ends != "sprung":
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 2))
+    nodes, directions = [], []
+    for fibre, line in enumerate(lines):
+        direction = (line.points[-1] - line.points[0]) / line.along[-1]
+        near, far = first[fibre], first[fibre + 1] - 1
+        tension = np.linalg.norm(pull[far])
+        stiffness = scene.fibres.axial_stiffness[fibre]
+        given_way = 0.5 * line.along[-1] * tension / (stiffness - tension)
+        for end, outward in ((near, -direction), (far, direction)):
+            pull[end] += scene.end_stiffness * given_way * outward
+            nodes.append(end)
+            directions.append(direction)
+    return np.array(nodes), np.sqrt(scene.end_stiffness) * np.array(directions)
+
+
+def _lateral(network: Network) -> np.ndarray:
+    """Unit vector across the driven fibre."""
+    near, far = network.fibres[network.driven_fibre]
+    return np.array([-(far - near)[1], (far - near)[0]]) / np.linalg.norm(far - near)
+
+
+def _motor(scene: Scene, lines: list[Line], first: np.ndarray):
+    """The node that a stroke carries, and its displacement for u = 1."""
+    if scene.stroke is None:
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 2))
+    network = scene.network
+    fibre = network.driven_fibre
+    nodes, weights = nodes_about(lines[fibre].along, network.driven_distance)
+    if max(weights) < 1.0:
+        raise ValueError(
+            f"stroke = {scene.stroke:g} carries the middle of a section, where this mesh has no "
+            "node; take an even number of elements_per_section"
+        )
+    node = first[fibre] + nodes[weights.index(max(weights))]
+    return np.array([node]), scene.stroke * _lateral(network)[None]
 
 
 def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
@@ -199,12 +263,12 @@ def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
     if scene.layout == "authors":
         return authors_mesh.load_polygon(scene, lines, first)
     load = np.zeros((first[-1], 2))
+    if scene.stroke is not None:
+        return load
     fibre = network.driven_fibre
     nodes, weights = nodes_about(lines[fibre].along, network.driven_distance)
-    near, far = network.fibres[fibre]
-    lateral = np.array([-(far - near)[1], (far - near)[0]]) / np.linalg.norm(far - near)
     for node, weight in zip(nodes, weights):
-        load[first[fibre] + node] += weight * scene.force * lateral
+        load[first[fibre] + node] += weight * scene.force * _lateral(network)
     return load
 
 

@@ -13,10 +13,12 @@ from pydantic import Field, TypeAdapter, ValidationError
 from fiberweb.arguments import plain, shown, spelt
 from fiberweb.errors import sentence
 from fiberweb.model import authors, buckling
+from fiberweb.model.material import Fibres
 from fiberweb.model.network import Network, from_spec
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
+ByFibre = Positive | tuple[Positive, ...]  # of all fibres, or of one after the other
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1, strict=True)]  # what numpy's generator takes
 
@@ -52,23 +54,36 @@ class Scene:
         setup: "described" (the paper's text), "published" (the authors' code) or "compliant" (with
             crossings that give).
         force: F_max (N), which the input multiplies; Eq. 3 if None.
+        stroke: displacement (m) that the input multiplies instead: the driven point is carried
+            along a line across its fibre, whatever that takes, and there is no force.
+        lever: length (m) of an arm that turns by the input times arcsin(stroke / lever), and
+            whose end carries the driven point; None if the stroke is proportional to the input.
         tension: constant pull along each fibre at its far end (N).
         duration: s.
         seed: of the input.
         sample_rate: of the recording (Hz).
         drive_rate: knots of the input per second (Hz).
-        diameter: of the fibres (m).
+        lowest_knot: the knots lie between this and 1; -1 or, for an input of one sign, 0.
+        diameter: of the fibres (m); this, E and the density are one number, or one for each fibre.
         youngs_modulus: E (Pa); the shear modulus is E/3 (incompressible).
         density: kg/m^3.
+        loss_factor: tan(delta) of the material, axial and in bending, at `loss_frequency`; it
+            grows in proportion to the frequency (Kelvin-Voigt).
+        loss_frequency: Hz.
         crossing_stiffness: k of the spring between fibres (N/m); infinity: one common point.
         crossing_damping: nu of the damper beside it (N s/m).
+        bond_stiffness: of a spring that keeps fibres at their angle where they cross (N m); 0:
+            they are free to turn.
         damping: rate at which velocity decays (1/s).
         filter_order: of the Laplace filter applied to velocities at every step, up to 6; 0 for
             none.
         dead_band: bend as the authors' rotations do, which see no angle between neighbouring
             elements below some 1e-5 rad (`fiberweb.engines.authors_rotations`).
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
-            slide along the fibre and to turn; "pinned": pinned near end, free far end.
+            slide along the fibre and to turn; "pinned": pinned near end, free far end; "sprung":
+            both slide, free to turn, on springs of `end_stiffness` along the fibre, which hold it
+            at `tension`.
+        end_stiffness: of these springs (N/m).
         layout: "exact": fibres cross where the network says and are pushed in one point;
             "authors": what is tied, read and pushed are nodes of the authors' 10 mm elements, five
             of them pushed in a crosshatch (`fiberweb.model.authors_mesh`); at any accuracy.
@@ -84,20 +99,27 @@ class Scene:
     network: Network
     setup: Literal[tuple(SETUPS)] = "described"
     force: Positive | None = None
+    stroke: Positive | None = None
+    lever: Positive | None = None
     tension: NotNegative = 0.01
     duration: Positive = 100.0
     seed: Seed = authors.SEED
     sample_rate: Positive = 250.0
     drive_rate: Positive = 5.0
-    diameter: Positive = 2e-3
-    youngs_modulus: Positive = 1e8
-    density: Positive = 1000.0
+    lowest_knot: Literal[-1, 0] = -1
+    diameter: ByFibre = 2e-3
+    youngs_modulus: ByFibre = 1e8
+    density: ByFibre = 1000.0
+    loss_factor: NotNegative = 0.0
+    loss_frequency: Positive = 10.0
     crossing_stiffness: PositiveOrPinned | None = None
     crossing_damping: NotNegative | None = None
+    bond_stiffness: NotNegative = 0.0
     damping: NotNegative | None = None
     filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
     dead_band: Annotated[bool, Field(strict=True)] | None = None
-    ends: Literal["clamped", "sliding", "pinned"] | None = None
+    ends: Literal["clamped", "sliding", "pinned", "sprung"] | None = None
+    end_stiffness: Positive | None = None
     layout: Literal["exact", "authors"] | None = None
     tension_ramp: NotNegative = 0.25
     disturbance: NotNegative = 0.0
@@ -118,14 +140,56 @@ class Scene:
         for name, value in SETUPS[self.setup][self.network.topology].items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
-        gaps = self.layout == "authors" and self.network.topology == "polygon"
-        if gaps and math.isinf(self.crossing_stiffness):
+        self._check()
+        if self.force is None and self.stroke is None:
+            object.__setattr__(self, "force", self._reference_force())
+
+    def _check(self) -> None:
+        """Raise ValueError for values that exclude one another."""
+        polygon = self.network.topology == "polygon"
+        if self.layout == "authors" and polygon and math.isinf(self.crossing_stiffness):
             raise ValueError(
                 "layout = 'authors' of a polygon starts with gaps at its crossings, which take "
                 "springs: give crossing_stiffness a finite value, or take layout = 'exact'"
             )
-        if self.force is None:
-            object.__setattr__(self, "force", self._reference_force())
+        if self.layout == "authors" and polygon and self.bond_stiffness:
+            raise ValueError(
+                f"bond_stiffness = {self.bond_stiffness:g}: layout = 'authors' of a polygon ties "
+                "ends of fibres, where there is no angle to keep; take layout = 'exact'"
+            )
+        if self.layout == "authors" and self.stroke is not None:
+            raise ValueError(
+                f"stroke = {self.stroke:g}: layout = 'authors' pushes several nodes, and a stroke "
+                "carries one; take layout = 'exact'"
+            )
+        if self.stroke is not None and self.force is not None:
+            raise ValueError(
+                f"force = {self.force:g} beside stroke = {self.stroke:g}: the driven point is "
+                "pushed or carried; give one of the two"
+            )
+        if self.stroke is not None and self.disturbance:
+            raise ValueError(
+                f"disturbance = {self.disturbance:g}: with a stroke the driven point is where the "
+                "motor carries it; leave one of the two out"
+            )
+        if self.lever is not None and not (self.stroke or math.inf) <= self.lever:
+            raise ValueError(
+                f"lever = {self.lever:g} carries a point no further than its length; give a "
+                "stroke of at most that"
+            )
+        if (self.ends == "sprung") != (self.end_stiffness is not None):
+            raise ValueError(
+                f"ends = {self.ends!r} with end_stiffness = {self.end_stiffness}: springs at the "
+                "ends take ends = 'sprung' and an end_stiffness, in N/m"
+            )
+        fibres = len(self.network.fibres)
+        for name in Fibres._fields:
+            value = getattr(self, name)
+            if isinstance(value, tuple) and len(value) != fibres:
+                raise ValueError(
+                    f"{name} has {len(value)} values for {fibres} fibres; give one for all, or one "
+                    "for each"
+                )
 
     def _reference_force(self) -> float:
         if self.setup == "published":
@@ -133,28 +197,46 @@ class Scene:
         return float(buckling.reference_force(self.network.spacing, self.bending_stiffness))
 
     @property
+    def fibres(self) -> Fibres:
+        """What each fibre is made of."""
+        count = len(self.network.fibres)
+        return Fibres(*(np.full(count, getattr(self, name)) for name in Fibres._fields))
+
+    @property
+    def thickest(self) -> float:
+        """Largest diameter (m)."""
+        return float(self.fibres.diameter.max())
+
+    @property
     def area(self) -> float:
-        """Cross-section (m^2)."""
-        return math.pi * self.diameter**2 / 4
+        """Cross-section of the driven fibre (m^2)."""
+        return float(self.fibres.area[self.network.driven_fibre])
 
     @property
     def bending_stiffness(self) -> float:
-        """EI (N m^2)."""
-        return self.youngs_modulus * buckling.second_moment(self.diameter)
+        """EI of the driven fibre (N m^2)."""
+        return float(self.fibres.bending_stiffness[self.network.driven_fibre])
 
     @property
     def axial_stiffness(self) -> float:
-        """EA (N)."""
-        return self.youngs_modulus * self.area
+        """EA of the most yielding fibre (N)."""
+        return float(self.fibres.axial_stiffness.min())
 
     @property
     def wave_speed(self) -> float:
-        """Of axial waves, sqrt(E / rho) (m/s)."""
-        return math.sqrt(self.youngs_modulus / self.density)
+        """Of axial waves, sqrt(E / rho), in the fibre where they are fastest (m/s)."""
+        return float(self.fibres.wave_speed.max())
+
+    @property
+    def loss_time(self) -> float:
+        """Viscosity over Young's modulus, loss factor over angular frequency (s)."""
+        return self.loss_factor / (2 * math.pi * self.loss_frequency)
 
     @property
     def buckling_number(self) -> float:
-        """B of Eq. 4, dimensionless."""
+        """B of Eq. 4, dimensionless; NaN of a stroke, which no force is known of."""
+        if self.force is None:
+            return math.nan
         return float(
             buckling.buckling_number(self.force, self.network.spacing, self.bending_stiffness)
         )

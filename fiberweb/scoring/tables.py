@@ -144,7 +144,7 @@ def _row(scene: Scene, scored, extra: dict[str, object]) -> dict:
         "topology": scene.network.topology,
         "n": scene.network.n,
         "spacing_m": scene.network.spacing,
-        "force_N": scene.force,
+        "force_N": float("nan") if scene.force is None else scene.force,
         "tension_N": scene.tension,
         "buckling_number": scene.buckling_number,
         "status": scored.attrs["status"],

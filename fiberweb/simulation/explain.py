@@ -84,10 +84,10 @@ def _left_out(plan: Plan) -> str:
     scene, engine = plan.scene, load(plan.engine)
     parts = []
     if engine.PLANAR:
-        number = f"B = {scene.buckling_number:.2g}"
-        parts.append(f"out-of-plane motion ({number}; it starts near {PLANE:g})")
+        at = "a stroke has no B" if scene.stroke else f"B = {scene.buckling_number:.2g}"
+        parts.append(f"out-of-plane motion ({at}; it starts near B = {PLANE:g})")
     if not engine.MODELS_SHEAR:
-        slender = scene.network.spacing / scene.diameter
+        slender = scene.network.spacing / scene.thickest
         effect = SHEAR * (SHEAR_AT / slender) ** 2
         parts.append(
             f"shear and rotary inertia (s/d = {slender:.3g}: about {100 * effect:.2g} % of the "
@@ -114,9 +114,13 @@ def _damping(scene: Scene, step: float) -> str:
         return (
             f"{scene.damping:g} /s after the kick, as PyElastica's: forces act {short:.2g} % short"
         )
-    return (
-        f"{scene.damping:g} /s, exact at any step ({scene.damping * step:.2g} decay times a step)"
-    )
+    uniform = f"{scene.damping:g} /s, exact at any step"
+    if scene.loss_factor:
+        return (
+            f"{uniform}; of the material tan(delta) = {scene.loss_factor:g} at "
+            f"{scene.loss_frequency:g} Hz, implicit: no limit of the step"
+        )
+    return f"{uniform} ({scene.damping * step:.2g} decay times a step)"
 
 
 def _duration(seconds: float) -> str:
@@ -134,10 +138,10 @@ def _warnings(scene: Scene) -> list[str]:
             f"B = {scene.buckling_number:.2g} is past buckling: trajectories are chaotic, so "
             "compare capacities and never trajectories"
         )
-    slender = scene.network.spacing / scene.diameter
+    slender = scene.network.spacing / scene.thickest
     if slender < STUBBY:
         warnings.append(f"s/d = {slender:.2g}: a fibre this stout is a poor beam")
-    for name, force in (("force", scene.force), ("tension", scene.tension)):
+    for name, force in (("force", scene.force or 0.0), ("tension", scene.tension)):
         if force > BREAKING * scene.axial_stiffness:
             warnings.append(
                 f"{name} = {force:.3g} N is {force / scene.axial_stiffness:.2g} of EA: strains "

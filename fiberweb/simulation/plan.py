@@ -127,8 +127,8 @@ def plan(
     step = planned.numerics.time_step
     if not 0 < step < math.inf:
         raise ValueError(
-            f"diameter = {scene.diameter:g} m, youngs_modulus = {scene.youngs_modulus:g} Pa and "
-            f"density = {scene.density:g} kg/m^3 give fibres without a stable time step; take "
+            f"diameter = {scene.diameter} m, youngs_modulus = {scene.youngs_modulus} Pa and "
+            f"density = {scene.density} kg/m^3 give fibres without a stable time step; take "
             "values of a material"
         )
     _refuse_endless(scene, step)
@@ -164,11 +164,11 @@ def request(
         raise ValueError(f"engine = {shown(engine)}: {unknown_key(engine, ENGINES, kind='engine')}")
     if elements_per_section is not None:
         elements_per_section = whole("elements_per_section", elements_per_section, 1)
-        most = max(1, math.floor(scene.network.spacing / (SHORTEST * scene.diameter)))
+        most = max(1, math.floor(scene.network.spacing / (SHORTEST * scene.thickest)))
         if elements_per_section > most:
             raise ValueError(
                 f"elements_per_section = {elements_per_section}: elements far shorter than a "
-                f"fibre of {scene.diameter:g} m is thick; take at most {most}"
+                f"fibre of {scene.thickest:g} m is thick; take at most {most}"
             )
     if time_step is not None:
         time_step = positive("time_step", time_step, " must be a positive number of seconds")
@@ -185,7 +185,7 @@ def request(
         tied = " with a finite crossing_stiffness" if math.isinf(scene.crossing_stiffness) else ""
         raise ValueError(
             f"spacing = {scene.network.spacing:g} m: a section shorter than {MIN_SLENDERNESS:g} "
-            f"diameters of {scene.diameter:g} m shears, which the {chosen} engine leaves out; "
+            f"diameters of {scene.thickest:g} m shears, which the {chosen} engine leaves out; "
             f"take a longer one, or engine = {other!r}{tied}"
         )
     if scene.setup == "published":
@@ -199,7 +199,7 @@ def request(
 
 def stubby(scene: Scene) -> bool:
     """Whether shear, and not bending alone, decides how the driven section moves."""
-    return scene.network.spacing < MIN_SLENDERNESS * scene.diameter
+    return scene.network.spacing < MIN_SLENDERNESS * scene.thickest
 
 
 def safety(scene: Scene) -> float:
@@ -208,8 +208,18 @@ def safety(scene: Scene) -> float:
     A force or a tension that is no longer small beside EA can fling a fibre about and strain it,
     and then bow and stretch make it stiffer than the straight one that the limit is of.
     """
-    strain = max(scene.force, scene.tension) / scene.axial_stiffness
+    strain = max(scene.force or 0.0, scene.tension) / scene.axial_stiffness
+    if scene.stroke is not None:
+        strain += _strain_of_stroke(scene)
     return min([SAFETY, *(share for least, share in SAFETY_BY_STRAIN.items() if strain >= least)])
+
+
+def _strain_of_stroke(scene: Scene) -> float:
+    """About how much a stroke in the middle strains a fibre whose ends are held or sprung."""
+    length = scene.network.fibre_lengths[scene.network.driven_fibre]
+    longer = 2.0 * scene.stroke**2 / length
+    give = 2.0 * scene.axial_stiffness / scene.end_stiffness if scene.end_stiffness else 0.0
+    return longer / (length + give)
 
 
 def _check_accuracy(scene: Scene, accuracy, given: dict) -> None:

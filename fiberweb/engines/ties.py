@@ -1,0 +1,242 @@
+"""What holds a network beside its fibres and the springs of its crossings: springs at the ends,
+bonds that keep the angle of fibres where they cross, and the motor that carries a point.
+
+A bond is a spring between the directions of two fibres at their crossing. Without elements that
+turn by themselves, a fibre's direction there is that of the chord between the two nodes beside the
+crossing: second order in the element length. Of turning elements it is bonded twice, half as
+stiff: the two before the crossing, and the two behind it (PyElastica's `FixedJoint` does one).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+
+from fiberweb.engines.jit import kernel
+from fiberweb.engines.layout import Interleaving, Layout
+from fiberweb.engines.stepping import drive_value
+from fiberweb.model.mesh import Mesh
+
+
+class Springs(NamedTuple):
+    """Nodes on springs to where they rest, each (sprung,)."""
+
+    nodes: np.ndarray
+    rest_x: np.ndarray  # m
+    rest_y: np.ndarray
+    root_x: np.ndarray  # direction times the root of the stiffness, (N/m)^(1/2)
+    root_y: np.ndarray
+
+
+class Bonds(NamedTuple):
+    """Crossings whose angle is kept, each (bonds,)."""
+
+    a: np.ndarray  # nodes
+    b: np.ndarray
+    stiffness: np.ndarray  # N m
+    rest: np.ndarray  # angle from a's fibre to b's
+    rest_cosine: np.ndarray
+    rest_sine: np.ndarray
+
+
+class Motor(NamedTuple):
+    """Nodes whose motion is given, each (moved,)."""
+
+    nodes: np.ndarray
+    rest_x: np.ndarray  # m
+    rest_y: np.ndarray
+    path_x: np.ndarray  # displacement for u = 1, m
+    path_y: np.ndarray
+
+
+class Ties(NamedTuple):
+    """All of them."""
+
+    springs: Springs
+    bonds: Bonds
+    motor: Motor
+    merged: bool  # whether nodes that meet at crossings are one point
+
+
+def build_ties(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Ties:
+    """The ties in the order of the kernels."""
+
+    def place(nodes):
+        return interleaving.place[layout.at[nodes]]
+
+    def columns(rows):
+        return np.ascontiguousarray(rows.T)
+
+    bonded = mesh.bond_stiffness > 0.0
+    a, b = mesh.joints[bonded].T
+    angle = np.repeat(angles(mesh), np.diff(mesh.first))
+    rest = angle[b] - angle[a]
+    return Ties(
+        Springs(place(mesh.sprung), *columns(mesh.position[mesh.sprung]), *columns(mesh.springs)),
+        Bonds(place(a), place(b), mesh.bond_stiffness[bonded], rest, np.cos(rest), np.sin(rest)),
+        Motor(place(mesh.moved), *columns(mesh.position[mesh.moved]), *columns(mesh.path)),
+        bool(np.isinf(mesh.joint_stiffness).any()),
+    )
+
+
+def angles(mesh: Mesh) -> np.ndarray:
+    """Direction of each fibre at rest, shape (fibres,), rad; along -x it is pi, never -pi."""
+    along = mesh.position[mesh.first[1:] - 1] - mesh.position[mesh.first[:-1]]
+    angle = np.arctan2(along[:, 1], along[:, 0])
+    return np.where(angle < -np.pi + 1e-6, angle + 2 * np.pi, angle)
+
+
+def touched(ties: Ties, stride: int) -> np.ndarray:
+    """Nodes on which springs, or bonds between chords, exert forces."""
+    beside = [at + shift for at in (ties.bonds.a, ties.bonds.b) for shift in (-stride, stride)]
+    return np.unique(np.concatenate([ties.springs.nodes, *beside])).astype(np.int64)
+
+
+def stiffness(mesh: Mesh, layout: Layout, lateral: csr_array) -> csr_array:
+    """Stiffness matrix of springs, and of bonds between chords.
+
+    lateral: lateral displacement differences of the elements, see `stability.differences`.
+    """
+    columns = lateral.shape[1]
+    number = np.cumsum(layout.solid).astype(int) - 1  # of an element by its padded edge
+    a, b = layout.joints[mesh.bond_stiffness > 0.0].T
+
+    def turn(nodes):
+        chords = layout.edge[nodes - 1] + layout.edge[nodes]
+        both = lateral[number[nodes - 1]] + lateral[number[nodes]]
+        return diags_array(1.0 / chords) @ both
+
+    return springs_stiffness(mesh, layout, columns) + _squared(turn(b) - turn(a), mesh)
+
+
+def springs_stiffness(mesh: Mesh, layout: Layout, columns: int) -> csr_array:
+    """Stiffness matrix of springs at ends over x of all nodes, y of all nodes, and what follows."""
+    at, size = layout.at[mesh.sprung], len(layout.x)
+    root = mesh.springs.T.ravel() * np.r_[layout.free_x[at], layout.free_y[at]]
+    rows = np.tile(np.arange(len(at)), 2)
+    roots = csr_array((root, (rows, np.r_[at, at + size])), shape=(len(at), columns))
+    return csr_array(roots.T @ roots)
+
+
+def turn_stiffness(mesh: Mesh, layout: Layout, columns: int) -> csr_array:
+    """Stiffness matrix of springs, and of bonds between elements, whose angles follow x and y."""
+    a, b = layout.joints[mesh.bond_stiffness > 0.0].T
+    rows, first = np.arange(len(a)), 2 * len(layout.x)
+    total = springs_stiffness(mesh, layout, columns)
+    for back in (0, 1):
+        at = first + np.r_[b - back, a - back]
+        sign = np.repeat([1.0, -1.0], len(a))
+        relative = csr_array((sign, (np.tile(rows, 2), at)), shape=(len(a), columns))
+        total = total + 0.5 * _squared(relative, mesh)
+    return csr_array(total)
+
+
+def _squared(relative: csr_array, mesh: Mesh) -> csr_array:
+    """Stiffness matrix of bonds from the turns of their crossings."""
+    bonds = diags_array(mesh.bond_stiffness[mesh.bond_stiffness > 0.0])
+    return csr_array(relative.T @ bonds @ relative)
+
+
+@kernel
+def spring_forces(springs, x, y, outer_x, outer_y):
+    """Add what the springs exert."""
+    for i in range(springs.nodes.shape[0]):
+        n = springs.nodes[i]
+        px, py = springs.root_x[i], springs.root_y[i]
+        along = px * (x[n] - springs.rest_x[i]) + py * (y[n] - springs.rest_y[i])
+        outer_x[n] -= px * along
+        outer_y[n] -= py * along
+
+
+@kernel
+def chord_bonds(bonds, x, y, outer_x, outer_y, stride):
+    """Add what bonds exert on the nodes beside crossings, and return their energy (J).
+
+    The moment grows with f(phi) of the kirchhoff engine in place of the angle phi.
+    """
+    energy = 0.0
+    for i in range(bonds.a.shape[0]):
+        a, b = bonds.a[i], bonds.b[i]
+        ax, ay = x[a + stride] - x[a - stride], y[a + stride] - y[a - stride]
+        bx, by = x[b + stride] - x[b - stride], y[b + stride] - y[b - stride]
+        over_a, over_b = 1.0 / (ax * ax + ay * ay), 1.0 / (bx * bx + by * by)
+        r = np.sqrt(over_a * over_b)
+        cosine, sine = (ax * bx + ay * by) * r, (ax * by - ay * bx) * r
+        c = cosine * bonds.rest_cosine[i] + sine * bonds.rest_sine[i]
+        s = sine * bonds.rest_cosine[i] - cosine * bonds.rest_sine[i]
+        w = 1.0 - c
+        f = s * (1.0 + w * (1.0 / 3.0) + w * w * (2.0 / 15.0))
+        slope = c * (1.0 + w * (1.0 / 3.0) + w * w * (2.0 / 15.0))
+        slope += s * s * (1.0 / 3.0 + w * (4.0 / 15.0))
+        moment = bonds.stiffness[i] * f * slope
+        energy += 0.5 * bonds.stiffness[i] * f * f
+        qx, qy = -moment * ay * over_a, moment * ax * over_a
+        outer_x[a + stride] += qx
+        outer_y[a + stride] += qy
+        outer_x[a - stride] -= qx
+        outer_y[a - stride] -= qy
+        qx, qy = moment * by * over_b, -moment * bx * over_b
+        outer_x[b + stride] += qx
+        outer_y[b + stride] += qy
+        outer_x[b - stride] -= qx
+        outer_y[b - stride] -= qy
+    return energy
+
+
+@kernel
+def turn_bonds(bonds, angle, torque, stride):
+    """Add to the torques of elements what bonds exert, and return their energy (J)."""
+    energy = 0.0
+    for i in range(bonds.a.shape[0]):
+        for back in range(2):
+            a, b = bonds.a[i] - back * stride, bonds.b[i] - back * stride
+            off = angle[b] - angle[a] - bonds.rest[i]
+            moment = 0.5 * bonds.stiffness[i] * off
+            energy += 0.5 * moment * off
+            torque[a] += moment
+            torque[b] -= moment
+    return energy
+
+
+@kernel
+def spring_energy(springs, x, y):
+    """Energy of the springs (J)."""
+    total = 0.0
+    for i in range(springs.nodes.shape[0]):
+        n = springs.nodes[i]
+        along = springs.root_x[i] * (x[n] - springs.rest_x[i])
+        along += springs.root_y[i] * (y[n] - springs.rest_y[i])
+        total += 0.5 * along * along
+    return total
+
+
+@kernel
+def carry(motor, x, y, vx, vy, following, step):
+    """Velocities by which the nodes whose motion is given are in a step where u has them then."""
+    for i in range(motor.nodes.shape[0]):
+        n = motor.nodes[i]
+        vx[n] = (motor.rest_x[i] + motor.path_x[i] * following - x[n]) / step
+        vy[n] = (motor.rest_y[i] + motor.path_y[i] * following - y[n]) / step
+
+
+@kernel
+def motor_work(motor, force_x, force_y, outer_x, outer_y, grown, stride):
+    """Work (J) of the motor against the forces of the edges and the outer ones beside them, while
+    u grows by so much."""
+    total = 0.0
+    for i in range(motor.nodes.shape[0]):
+        n = motor.nodes[i]
+        total -= motor.path_x[i] * (force_x[n] - force_x[n - stride] + outer_x[n])
+        total -= motor.path_y[i] * (force_y[n] - force_y[n - stride] + outer_y[n])
+    return total * grown
+
+
+@kernel
+def grown(forcing, steps, step):
+    """By how much u grew over the positions' step before so many whole ones; 0 at the start."""
+    if steps == 0:
+        return 0.0
+    before = drive_value(forcing.drive, forcing.drive_rate, (steps - 0.5) * step)
+    return drive_value(forcing.drive, forcing.drive_rate, (steps + 0.5) * step) - before
