@@ -192,24 +192,23 @@ def _ends(scene: Scene, lines: list[Line], first: np.ndarray):
     network = scene.network
     held = np.zeros((first[-1], 2), dtype=bool)
     pull = np.zeros((first[-1], 2))
-    held[first[:-1]] = scene.ends != "sprung"
+    held[first[:-1]] = True
     slanted = {}
     pulled = range(len(lines))
     if scene.setup == "published":
         pulled = authors_mesh.pulled(network)
     for fibre, line in enumerate(lines):
         direction = (line.points[-1] - line.points[0]) / line.along[-1]
-        near, far = first[fibre], first[fibre + 1] - 1
-        for end in {"sliding": [far], "sprung": [near, far]}.get(scene.ends, []):
+        far = first[fibre + 1] - 1
+        if scene.ends in ("sliding", "sprung"):
             if abs(direction).min() > 1e-12:
-                slanted[end] = direction
+                slanted[far] = direction
             else:
-                held[end] = abs(direction) < 0.5
+                held[far] = abs(direction) < 0.5
         if fibre in pulled:
             pull[far] = scene.tension * direction
-            # in the published setup on a held node, where only the filter sees it
-            if scene.setup == "published" or scene.ends == "sprung":
-                pull[near] = -pull[far]
+            if scene.setup == "published":
+                pull[first[fibre]] = -pull[far]  # on a held node, where only the filter sees it
     guided = np.array(list(slanted), dtype=np.int64)
     return held, guided, np.array([*slanted.values()]).reshape(-1, 2), pull
 
@@ -219,18 +218,12 @@ def _springs(scene: Scene, lines: list[Line], first: np.ndarray, pull: np.ndarra
     tension is added to the pull."""
     if scene.ends != "sprung":
         return np.zeros(0, dtype=np.int64), np.zeros((0, 2))
-    nodes, directions = [], []
-    for fibre, line in enumerate(lines):
-        direction = (line.points[-1] - line.points[0]) / line.along[-1]
-        near, far = first[fibre], first[fibre + 1] - 1
-        tension = np.linalg.norm(pull[far])
-        stiffness = scene.fibres.axial_stiffness[fibre]
-        given_way = 0.5 * line.along[-1] * tension / (stiffness - tension)
-        for end, outward in ((near, -direction), (far, direction)):
-            pull[end] += scene.end_stiffness * given_way * outward
-            nodes.append(end)
-            directions.append(direction)
-    return np.array(nodes), np.sqrt(scene.end_stiffness) * np.array(directions)
+    far = first[1:] - 1
+    along = np.array([(line.points[-1] - line.points[0]) / line.along[-1] for line in lines])
+    tension = np.linalg.norm(pull[far], axis=1)
+    given_way = scene.network.fibre_lengths * tension / (scene.fibres.axial_stiffness - tension)
+    pull[far] += scene.end_stiffness * given_way[:, None] * along
+    return far, np.sqrt(scene.end_stiffness) * along
 
 
 def _lateral(network: Network) -> np.ndarray:

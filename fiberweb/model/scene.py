@@ -81,9 +81,8 @@ class Scene:
             elements below some 1e-5 rad (`fiberweb.engines.authors_rotations`).
         ends: "clamped" near end, free far end; "sliding": pinned near end, far end free to
             slide along the fibre and to turn; "pinned": pinned near end, free far end; "sprung":
-            both slide, free to turn, on springs of `end_stiffness` along the fibre, which hold it
-            at `tension`.
-        end_stiffness: of these springs (N/m).
+            as sliding, but on a spring along the fibre, which holds it at `tension` at rest.
+        end_stiffness: of this spring (N/m).
         layout: "exact": fibres cross where the network says and are pushed in one point;
             "authors": what is tied, read and pushed are nodes of the authors' 10 mm elements, five
             of them pushed in a crosshatch (`fiberweb.model.authors_mesh`); at any accuracy.

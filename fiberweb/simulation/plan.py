@@ -218,7 +218,7 @@ def _strain_of_stroke(scene: Scene) -> float:
     """About how much a stroke in the middle strains a fibre whose ends are held or sprung."""
     length = scene.network.fibre_lengths[scene.network.driven_fibre]
     longer = 2.0 * scene.stroke**2 / length
-    give = 2.0 * scene.axial_stiffness / scene.end_stiffness if scene.end_stiffness else 0.0
+    give = scene.axial_stiffness / scene.end_stiffness if scene.end_stiffness else 0.0
     return longer / (length + give)
 
 
