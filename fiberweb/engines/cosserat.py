@@ -69,7 +69,7 @@ def integrate(mesh: Mesh, numerics: Numerics, watch: Callable | None = None) -> 
     stepping.displace(state, *chain)
     blocks = packed(*np.zeros((9, len(state.x))))
     scratch = passes.Scratch(*(block[timing.stride :] for block in blocks[:5]), *blocks[5:])
-    tied = ties.build_ties(*chain)
+    tied = ties.build_ties(*chain, "chain")
     arguments = (
         state, scratch, *coefficients(*chain, timing.step), held_at_the_end(*chain),
         stepping.build_guides(*chain), tied, viscosity.build_viscosity(*chain, order=2),

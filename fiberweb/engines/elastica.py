@@ -21,6 +21,7 @@ from fiberweb.engines.cosserat import kick_before_decay
 from fiberweb.engines.cosserat import largest_step as largest_step
 from fiberweb.engines.cosserat import refuse as cannot_model
 from fiberweb.engines.stepping import drive_value
+from fiberweb.engines.ties import angles, bonds
 from fiberweb.model.mesh import Mesh
 
 PACKAGES = ("pyelastica", "numba", "numpy")
@@ -75,6 +76,40 @@ class Guide(ea.ConstraintBase):
         velocity[:] = (self.along @ velocity) * self.along
 
 
+class Motor(ea.ConstraintBase):
+    """A node whose motion is given: the one of all that a motor carries."""
+
+    def __init__(self, *_, node, rest, path, coefficients, rate, step, decay, **kwargs):
+        super().__init__(**kwargs)
+        self.node, self.rest, self.path = node, rest, path
+        self.coefficients, self.rate = coefficients, rate
+        self.step, self.decay = step, decay
+
+    def constrain_values(self, system, time):
+        """Its position follows from its velocity."""
+
+    def constrain_rates(self, system, time):
+        """What takes it along in a step, before the damper has its part; time is in mid-step."""
+        if time == 0.0:  # the simulator tries all constraints before it starts
+            return
+        u = drive_value(self.coefficients, self.rate, time + self.step)
+        way = self.rest + self.path * u - system.position_collection[:, self.node]
+        system.velocity_collection[:, self.node] = way / (self.step * self.decay)
+
+
+class Spring(ea.NoForces):
+    """A spring along the fibre at one of its nodes, to where this rests."""
+
+    def __init__(self, node, rest, root):
+        super().__init__()
+        self.node, self.rest, self.root = node, rest, root
+
+    def apply_forces(self, system, time=0.0):
+        """Pull the node back."""
+        along = self.root @ (system.position_collection[:, self.node] - self.rest)
+        system.external_forces[:, self.node] -= along * self.root
+
+
 class Wall(ea.NoForces):
     """Bending moment of a clamp on the first element: the curvature of the half cell between
     wall and element centre (see `fiberweb.engines.layout`)."""
@@ -126,6 +161,11 @@ def refuse(mesh: Mesh) -> None:
             f"dead_band = {mesh.scene.dead_band}: PyElastica has had none since 0.3.3; use "
             "engine = 'cosserat', or dead_band = False"
         )
+    if mesh.scene.loss_factor:
+        raise ValueError(
+            f"loss_factor = {mesh.scene.loss_factor:g}: PyElastica has no material damping; use "
+            "engine = 'kirchhoff' or 'cosserat'"
+        )
 
 
 def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recording:
@@ -137,7 +177,7 @@ def integrate(mesh: Mesh, numerics: Numerics, disturbance: float = 0.0) -> Recor
         disturbance: velocity (m/s) out of the plane given to the driven nodes at the start.
 
     Raises:
-        ValueError: crossings without compliance, or a dead band.
+        ValueError: crossings without compliance, a dead band, or material damping.
     """
     simulator, rods, step, per_sample = assemble(mesh, numerics)
     for rod, nodes in _driven(mesh, rods):
@@ -180,7 +220,7 @@ def assemble(mesh: Mesh, numerics: Numerics):
         rod.position_collection[:2] += MM * moved.T
         simulator.append(rod)
     for fibre, rod in enumerate(rods):
-        _hold(simulator, mesh, fibre, rod)
+        _hold(simulator, mesh, fibre, rod, step)
         _pull(simulator, mesh, fibre, rod)
         _damp(simulator, mesh, fibre, rod, step)
     for rod, nodes in _driven(mesh, rods):
@@ -190,38 +230,72 @@ def assemble(mesh: Mesh, numerics: Numerics):
             nodes=nodes,
             load=MICRONEWTON * np.column_stack([load, np.zeros(len(load))]).T,
             coefficients=mesh.drive,
-            rate=scene.drive_rate,
+            rate=mesh.drive_rate,
         )
-    fibre_of = np.repeat(np.arange(len(rods)), np.diff(mesh.first))
-    for (a, b), k, nu in zip(mesh.joints, mesh.joint_stiffness, mesh.joint_damping):
-        simulator.connect(
-            rods[fibre_of[a]], rods[fibre_of[b]],
-            int(a - mesh.first[fibre_of[a]]), int(b - mesh.first[fibre_of[b]]),
-        ).using(ea.FreeJoint, k=k * GRAM_PER_SECOND, nu=nu * GRAM_PER_SECOND)  # fmt: skip
+    _connect(simulator, mesh, rods)
     simulator.finalize()
     return simulator, rods, step, per_sample
+
+
+def _connect(simulator, mesh: Mesh, rods) -> None:
+    """Tie the rods where they cross, and keep their angle there: PyElastica's joint does it for the
+    elements behind two nodes, so a bond takes two of them, half as stiff (`ties`)."""
+    fibre_of = np.repeat(np.arange(len(rods)), np.diff(mesh.first))
+    direction = np.repeat(angles(mesh), np.diff(mesh.first))
+    bond_of = np.zeros(len(mesh.joints))
+    bond_of[mesh.bond_stiffness > 0.0] = bonds(mesh, "chain")
+    for (a, b), k, nu, bond in zip(
+        mesh.joints, mesh.joint_stiffness, mesh.joint_damping, bond_of
+    ):
+        pair = rods[fibre_of[a]], rods[fibre_of[b]]
+        one, two = int(a - mesh.first[fibre_of[a]]), int(b - mesh.first[fibre_of[b]])
+        simulator.connect(*pair, one, two).using(
+            ea.FreeJoint, k=k * GRAM_PER_SECOND, nu=nu * GRAM_PER_SECOND
+        )
+        for back in (0, 1) if bond else ():
+            simulator.connect(*pair, one - back, two - back).using(
+                ea.FixedJoint, k=0.0, nu=0.0, kt=0.5 * bond * MM * MICRONEWTON,
+                rest_rotation_matrix=_rest_rotation(direction[b] - direction[a]),
+            )  # fmt: skip
+
+
+def _rest_rotation(angle: float) -> np.ndarray:
+    """Directors of one rod times those of another, transposed, at an angle in the plane. The first
+    director is out of the plane, the third along the rod."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
 def _rod(mesh: Mesh, fibre: int):
     nodes = MM * mesh.position[mesh.first[fibre] : mesh.first[fibre + 1]]
     span = nodes[-1] - nodes[0]
-    scene = mesh.scene
+    fibres = mesh.scene.fibres
     return ea.CosseratRod.straight_rod(
         n_elements=len(nodes) - 1,
         start=np.array([*nodes[0], 0.0]),
         direction=np.array([*span, 0.0]) / np.linalg.norm(span),
         normal=np.array([0.0, 0.0, 1.0]),
         base_length=np.linalg.norm(span),
-        base_radius=0.5 * scene.diameter * MM,
-        density=scene.density * 1e3 / MM**3,
-        youngs_modulus=scene.youngs_modulus,  # 1 Pa is 1 g / (mm s^2)
-        shear_modulus=scene.youngs_modulus / 3.0,
+        base_radius=0.5 * fibres.diameter[fibre] * MM,
+        density=fibres.density[fibre] * 1e3 / MM**3,
+        youngs_modulus=fibres.youngs_modulus[fibre],  # 1 Pa is 1 g / (mm s^2)
+        shear_modulus=fibres.youngs_modulus[fibre] / 3.0,
         position=np.column_stack([nodes, np.zeros(len(nodes))]).T,
     )
 
 
-def _hold(simulator, mesh: Mesh, fibre: int, rod) -> None:
-    held = mesh.held[mesh.first[fibre] : mesh.first[fibre + 1]]
+def _hold(simulator, mesh: Mesh, fibre: int, rod, step: float) -> None:
+    first = mesh.first[fibre]
+    held = mesh.held[first : mesh.first[fibre + 1]].copy()
+    for node, path in zip(mesh.moved - first, mesh.path):
+        if 0 <= node < len(held):
+            held[node] = False
+            simulator.constrain(rod).using(
+                Motor, constrained_position_idx=(int(node),), node=int(node),
+                rest=_in_space(mesh.position[first + node]), path=_in_space(path),
+                coefficients=mesh.drive, rate=mesh.drive_rate, step=step,
+                decay=np.exp(-mesh.scene.damping * step),
+            )  # fmt: skip
     for node in np.flatnonzero(held.any(axis=1)):
         simulator.constrain(rod).using(
             ea.GeneralConstraint,
@@ -253,6 +327,17 @@ def _pull(simulator, mesh: Mesh, fibre: int, rod) -> None:
             end_force=MICRONEWTON * np.array([*far, 0.0]),
             ramp_up_time=max(mesh.scene.tension_ramp, 1e-12),
         )
+    for node, root in zip(mesh.sprung, mesh.springs):
+        if mesh.first[fibre] <= node < mesh.first[fibre + 1]:
+            simulator.add_forcing_to(rod).using(
+                Spring, node=int(node - mesh.first[fibre]), rest=_in_space(mesh.position[node]),
+                root=np.sqrt(GRAM_PER_SECOND) * _in_space(root) / MM,
+            )  # fmt: skip
+
+
+def _in_space(vector: np.ndarray) -> np.ndarray:
+    """A vector of the plane (m) in space, mm."""
+    return MM * np.array([*vector, 0.0])
 
 
 def _damp(simulator, mesh: Mesh, fibre: int, rod, step: float) -> None:

@@ -89,7 +89,7 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
     state = passes.State(*packed(read.rest_x, read.rest_y, still, still))
     stepping.displace(state, *chain)
     (mass,) = packed(layout.mass[interleaving.nodes])
-    tied = ties.build_ties(*chain)
+    tied = ties.build_ties(*chain, "spline" if order == 4 else "chain")
     touched = ties.touched(tied, interleaving.stride)
     arguments = (
         state, _scratch(state, interleaving.stride), coefficients(*chain, timing.step, order),
@@ -222,18 +222,25 @@ def advance(
                 following = stepping.drive_value(
                     forcing.drive, forcing.drive_rate, (k + 1.5) * step
                 )
-                ties.carry(tied.motor, x, y, vx, vy, following, step / rods.decay)
+                ties.carry(tied.motor, x, y, vx, vy, following, step * rods.decay)
             passes.kick_pass(*kick_x, rods.decay, step)
             passes.kick_pass(*kick_y, rods.decay, step)
-            # What springs is to be in what viscous stresses follow, or the step would have a limit;
-            # nodes that are one point are brought together after them.
-            if not merged:
-                tie(pairs, groups, relative, before, kicked, state, step)
-            if damped:
+            if damped and merged:
+                viscosity.foresee(viscous, x, y, vx, vy, step, 1.0)
                 viscosity.damp(viscous, damping, step, stride)
-                if not merged:
-                    crossings.gather_pairs(pairs, relative, x, y, vx, vy)
-            if merged:
+                viscosity.foresee(viscous, x, y, vx, vy, step, -1.0)
+                viscosity.look(viscous, vx, vy)
+                tie(pairs, groups, relative, before, kicked, state, step)
+                viscosity.learn(viscous, vx, vy)
+            elif damped:
+                viscosity.foresee(viscous, x, y, vx, vy, step, 1.0)
+                tie(pairs, groups, relative, before, kicked, state, step)
+                viscosity.foresee(viscous, x, y, vx, vy, step, -1.0)
+                viscosity.look(viscous, vx, vy)
+                viscosity.damp(viscous, damping, step, stride)
+                viscosity.learn(viscous, vx, vy)
+                crossings.gather_pairs(pairs, relative, x, y, vx, vy)
+            else:
                 tie(pairs, groups, relative, before, kicked, state, step)
             if carried:
                 mean = 0.5 * (since + following - u)

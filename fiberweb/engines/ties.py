@@ -3,8 +3,11 @@ bonds that keep the angle of fibres where they cross, and the motor that carries
 
 A bond is a spring between the directions of two fibres at their crossing. Without elements that
 turn by themselves, a fibre's direction there is that of the chord between the two nodes beside the
-crossing: second order in the element length. Of turning elements it is bonded twice, half as
-stiff: the two before the crossing, and the two behind it (PyElastica's `FixedJoint` does one).
+crossing. Of turning elements it is bonded twice, half as stiff: the two before the crossing, and
+the two behind it (PyElastica's `FixedJoint` does one). Either spreads the bond's couple over two
+elements, within which the fibre then bends less than under a couple at a point: by `SPREAD` l / EI
+of compliance, which the spring is given back. What is left is second order in the element length l,
+and a rigid bond is a spring of that compliance alone.
 """
 
 from __future__ import annotations
@@ -18,6 +21,12 @@ from fiberweb.engines.jit import kernel
 from fiberweb.engines.layout import Interleaving, Layout
 from fiberweb.engines.stepping import drive_value
 from fiberweb.model.mesh import Mesh
+
+
+# The bending energy that a couple M has in two elements is (M / 2)^2 l / EI at a point. Spread as
+# two forces it is a third of that (moments of a cubic spline), or nothing (those of a chain, at
+# nodes), of which a compliance of 1/3 or 1/4 l / EI is missing.
+SPREAD = {"spline": 1 / 3, "chain": 1 / 4}
 
 
 class Springs(NamedTuple):
@@ -60,8 +69,8 @@ class Ties(NamedTuple):
     merged: bool  # whether nodes that meet at crossings are one point
 
 
-def build_ties(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Ties:
-    """The ties in the order of the kernels."""
+def build_ties(mesh: Mesh, layout: Layout, interleaving: Interleaving, moments: str) -> Ties:
+    """The ties in the order of the kernels; moments: "spline" or "chain", see `SPREAD`."""
 
     def place(nodes):
         return interleaving.place[layout.at[nodes]]
@@ -75,10 +84,22 @@ def build_ties(mesh: Mesh, layout: Layout, interleaving: Interleaving) -> Ties:
     rest = angle[b] - angle[a]
     return Ties(
         Springs(place(mesh.sprung), *columns(mesh.position[mesh.sprung]), *columns(mesh.springs)),
-        Bonds(place(a), place(b), mesh.bond_stiffness[bonded], rest, np.cos(rest), np.sin(rest)),
+        Bonds(place(a), place(b), bonds(mesh, moments), rest, np.cos(rest), np.sin(rest)),
         Motor(place(mesh.moved), *columns(mesh.position[mesh.moved]), *columns(mesh.path)),
         bool(np.isinf(mesh.joint_stiffness).any()),
     )
+
+
+def bonds(mesh: Mesh, moments: str) -> np.ndarray:
+    """Stiffness of the springs at the joints that have a bond, shape (bonds,), N m."""
+    bonded = mesh.bond_stiffness > 0.0
+    fibre = np.repeat(np.arange(len(mesh.first) - 1), np.diff(mesh.first))
+    missing = np.zeros(bonded.sum())
+    for nodes in mesh.joints[bonded].T:
+        beside = mesh.position[nodes + 1] - mesh.position[nodes - 1]
+        element = 0.5 * np.linalg.norm(beside, axis=1)
+        missing += SPREAD[moments] * element / mesh.scene.fibres.bending_stiffness[fibre[nodes]]
+    return 1.0 / (1.0 / mesh.bond_stiffness[bonded] + missing)
 
 
 def angles(mesh: Mesh) -> np.ndarray:
@@ -108,7 +129,7 @@ def stiffness(mesh: Mesh, layout: Layout, lateral: csr_array) -> csr_array:
         both = lateral[number[nodes - 1]] + lateral[number[nodes]]
         return diags_array(1.0 / chords) @ both
 
-    return springs_stiffness(mesh, layout, columns) + _squared(turn(b) - turn(a), mesh)
+    return springs_stiffness(mesh, layout, columns) + _squared(turn(b) - turn(a), bonds(mesh, "spline"))
 
 
 def springs_stiffness(mesh: Mesh, layout: Layout, columns: int) -> csr_array:
@@ -129,14 +150,13 @@ def turn_stiffness(mesh: Mesh, layout: Layout, columns: int) -> csr_array:
         at = first + np.r_[b - back, a - back]
         sign = np.repeat([1.0, -1.0], len(a))
         relative = csr_array((sign, (np.tile(rows, 2), at)), shape=(len(a), columns))
-        total = total + 0.5 * _squared(relative, mesh)
+        total = total + 0.5 * _squared(relative, bonds(mesh, "chain"))
     return csr_array(total)
 
 
-def _squared(relative: csr_array, mesh: Mesh) -> csr_array:
-    """Stiffness matrix of bonds from the turns of their crossings."""
-    bonds = diags_array(mesh.bond_stiffness[mesh.bond_stiffness > 0.0])
-    return csr_array(relative.T @ bonds @ relative)
+def _squared(relative: csr_array, stiffness: np.ndarray) -> csr_array:
+    """Stiffness matrix of springs from what they are stretched by."""
+    return csr_array(relative.T @ diags_array(stiffness) @ relative)
 
 
 @kernel

@@ -69,6 +69,9 @@ class Viscosity(NamedTuple):
     tension: np.ndarray
     force_x: np.ndarray  # of the edges
     force_y: np.ndarray
+    tied: np.ndarray  # nodes that are one point with others, (tied,)
+    push_x: np.ndarray  # what that has made of their velocities in the step before, (tied,)
+    push_y: np.ndarray
 
 
 def build_viscosity(
@@ -78,7 +81,8 @@ def build_viscosity(
     time = mesh.scene.loss_time
     count = len(interleaving.nodes) if time > 0.0 else 0
     factors = Factors(*packed(*np.zeros((9, count))))
-    work = packed(*np.zeros((7, count)))
+    tied = np.unique(interleaving.place[layout.joints])
+    work = *packed(*np.zeros((7, count))), tied, *np.zeros((2, len(tied)))
     if not count:
         return Viscosity(Compliance(*packed(*np.zeros((3, 0)))), factors, *work)
     axial = mesh.scene.fibres.axial_stiffness[layout.fibre] * time / 2
@@ -99,7 +103,7 @@ def build_viscosity(
 @kernel
 def views(viscosity, scratch, rods, state, s):
     """What each pass takes, in the order of its arguments; see `kirchhoff_passes.pass_views`."""
-    bx, by, _, moment, tension, fx, fy = viscosity[2:]
+    bx, by, _, moment, tension, fx, fy = viscosity[2:9]
     tx, ty, inverse = scratch[:3]
     kx, ky = rods.kick_x, rods.kick_y
     x, y, vx, vy = state
@@ -113,6 +117,33 @@ def views(viscosity, scratch, rods, state, s):
         (x[inner], vx[inner], kx[inner], fx[inner], fx[one]),
         (y[inner], vy[inner], ky[inner], fy[inner], fy[one]),
     )  # fmt: skip
+
+
+@kernel
+def foresee(viscosity, x, y, vx, vy, step, sign):
+    """Push nodes that are one point with others as in the step before."""
+    for i in range(viscosity.tied.shape[0]):
+        n = viscosity.tied[i]
+        vx[n] += sign * viscosity.push_x[i]
+        vy[n] += sign * viscosity.push_y[i]
+        x[n] += sign * step * viscosity.push_x[i]
+        y[n] += sign * step * viscosity.push_y[i]
+
+
+@kernel
+def look(viscosity, vx, vy):
+    """Take velocities before nodes are made one point ..."""
+    for i in range(viscosity.tied.shape[0]):
+        viscosity.push_x[i] = -vx[viscosity.tied[i]]
+        viscosity.push_y[i] = -vy[viscosity.tied[i]]
+
+
+@kernel
+def learn(viscosity, vx, vy):
+    """... and what has changed after it."""
+    for i in range(viscosity.tied.shape[0]):
+        viscosity.push_x[i] += vx[viscosity.tied[i]]
+        viscosity.push_y[i] += vy[viscosity.tied[i]]
 
 
 @kernel
@@ -275,7 +306,7 @@ def damp_elements(viscosity, state, scratch, rods, s):
     mm, mm1, tt, tt1 = (
         viscosity.factors.mm, viscosity.factors.mm1, viscosity.factors.tt, viscosity.factors.tt1
     )  # fmt: skip
-    bx, by, spin, moment, tension, fx, fy = viscosity[2:]
+    bx, by, spin, moment, tension, fx, fy = viscosity[2:9]
     kick_x, kick_y, decay = rods.kick_x, rods.kick_y, rods.decay
     low, high = REACH * s, vx.shape[0] - REACH * s  # beyond are ghosts without a length
     for i in range(low, high):
@@ -310,7 +341,7 @@ def damp_elements(viscosity, state, scratch, rods, s):
 @kernel
 def elements_power(viscosity, after, s):
     """Power (W) that the viscous stresses of elements take, from velocities after the step."""
-    bx, by, spin, moment, _, fx, fy = viscosity[2:]
+    bx, by, spin, moment, _, fx, fy = viscosity[2:9]
     total = 0.0
     for i in range(REACH * s, fx.shape[0] - REACH * s):
         j, up = i - s, i + s

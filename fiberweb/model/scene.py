@@ -20,6 +20,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 ByFibre = Positive | tuple[Positive, ...]  # of all fibres, or of one after the other
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
+NotNegativeOrRigid = Annotated[float, Field(ge=0, strict=True)]  # infinity: rigid
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1, strict=True)]  # what numpy's generator takes
 
 # What each setup does where the scene leaves a field open. `described`: the paper's text, and where
@@ -73,7 +74,7 @@ class Scene:
         crossing_stiffness: k of the spring between fibres (N/m); infinity: one common point.
         crossing_damping: nu of the damper beside it (N s/m).
         bond_stiffness: of a spring that keeps fibres at their angle where they cross (N m); 0:
-            they are free to turn.
+            they are free to turn, infinity: they turn as one.
         damping: rate at which velocity decays (1/s).
         filter_order: of the Laplace filter applied to velocities at every step, up to 6; 0 for
             none.
@@ -113,7 +114,7 @@ class Scene:
     loss_frequency: Positive = 10.0
     crossing_stiffness: PositiveOrPinned | None = None
     crossing_damping: NotNegative | None = None
-    bond_stiffness: NotNegative = 0.0
+    bond_stiffness: NotNegativeOrRigid = 0.0
     damping: NotNegative | None = None
     filter_order: Annotated[int, Field(ge=0, le=6, strict=True)] | None = None
     dead_band: Annotated[bool, Field(strict=True)] | None = None

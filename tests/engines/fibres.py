@@ -78,7 +78,7 @@ def struck(mesh: Mesh, node: int, force: tuple[float, float], start: float, leng
     rate = 4.0 / length
     rest = np.zeros((max(0, round(start * rate)), 4))
     drive = np.concatenate([rest, BUMP * rate ** np.arange(3, -1, -1), np.zeros((1, 4))])
-    return replace(mesh, load=load, drive=drive, scene=replace(mesh.scene, drive_rate=rate))
+    return replace(mesh, load=load, drive=drive, drive_rate=rate)
 
 
 def free(mesh: Mesh) -> Mesh:

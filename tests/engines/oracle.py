@@ -17,13 +17,13 @@ from fiberweb.model.mesh import Mesh
 from fiberweb.model.scene import Scene
 
 
-def kirchhoff_energy(nodes, rest, scene: Scene, clamped: bool, order: int = 4):
+def kirchhoff_energy(nodes, rest, stiffness, clamped: bool, order: int = 4):
     """Elastic energy (J) of a Kirchhoff fibre.
 
     Args:
         nodes: positions, shape (..., nodes, 2), m; may be complex.
         rest: the same at rest, shape (nodes, 2).
-        scene: material.
+        stiffness: EA (N) and EI (N m^2).
         clamped: whether a wall holds the direction of the near end.
         order: 4, or 2 for the chain without spline and bow.
     """
@@ -62,7 +62,8 @@ def kirchhoff_energy(nodes, rest, scene: Scene, clamped: bool, order: int = 4):
     ratio = rest_length / length
     stretching = 1 / ratio - 1 + np.log(ratio) + (1 / ratio - 1 + 0.5 * bow) * bow
     stretching = (rest_length * stretching).sum(-1)
-    return scene.bending_stiffness * bending + scene.axial_stiffness * stretching
+    axial, bent = stiffness
+    return bent * bending + axial * stretching
 
 
 def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
@@ -73,7 +74,7 @@ def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
         length = mesh.edges(fibre)
         even = len(length) > 3 and np.allclose(length[-3:], length[-1])
         if order == 4 and even and not mesh.held[last].any() and last not in mesh.guided:
-            element = mesh.scene.density * mesh.scene.area * length[-1]
+            element = mesh.scene.fibres.line_density[fibre] * length[-1]
             mass[[last, last - 1, last - 2]] = element * np.array([3 / 8, 7 / 6, 23 / 24])
     return mass
 
@@ -81,38 +82,140 @@ def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
 def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray:
     """Displacement of every node at every step, shape (steps + 1, nodes, 2), m."""
     scene, mass = mesh.scene, kirchhoff_masses(mesh, order)
+    stiffness = np.column_stack([scene.fibres.axial_stiffness, scene.fibres.bending_stiffness])
     # the flow of dv/dt = a - rate v over a step, for a that is held
     decay, kick = _flow(scene.damping, step)
     groups = _meeting(mesh)
+    # what crossings that are one point did to velocities in the last step, or, at springs, what the
+    # viscous stresses did
+    pushed = np.zeros_like(mesh.position)
     x, v = mesh.position.copy(), np.zeros_like(mesh.position)
     out = [x - mesh.position]
     for k in range(steps):
         time = (k + 0.5) * step
         x = x + 0.5 * step * v
-        force = _outer(mesh, time)
+        force = _outer(mesh, time) + _ties(mesh, x, order)
         for fibre, (start, end) in enumerate(pairwise(mesh.first)):
             force[start:end] -= _gradient(
                 lambda nodes, s=start, e=end, f=fibre: kirchhoff_energy(
-                    nodes, mesh.position[s:e], scene, mesh.clamped[f], order
+                    nodes, mesh.position[s:e], stiffness[f], mesh.clamped[f], order
                 ),
                 x[start:end],
             )
         new = decay * v + kick * np.where(mesh.held, 0.0, force / mass[:, None])
         for nodes, spring, damper in groups:
-            if np.isinf(spring).any():  # one point: an inelastic collision
-                new[nodes] = mass[nodes] @ new[nodes] / mass[nodes].sum()
+            if np.isinf(spring).any():
                 continue
-            # m dv/dt = f - K x - N v - m rate v, with f and x held over the step
-            push = (force[nodes] - spring @ x[nodes]) / mass[nodes, None]
+            # m dv/dt = f - K x - N v - m rate v, with f and x held over the step, and in f what
+            # viscous stresses did in the last one
+            push = (force[nodes] - spring @ x[nodes]) / mass[nodes, None] + pushed[nodes] / kick
             count = len(nodes)
             drag = -damper / mass[nodes, None] - scene.damping * np.eye(count)
             flow = expm(step * np.block([[drag, push], [np.zeros((2, count + 2))]]))
-            new[nodes] = flow[:count, :count] @ v[nodes] + flow[:count, count:]
+            new[nodes] = flow[:count, :count] @ v[nodes] + flow[:count, count:] - pushed[nodes]
+        new[mesh.moved] = _on_path(mesh, x, time, step)
+        if scene.loss_time:
+            tied = np.unique(mesh.joints)
+            merged = np.isinf(mesh.joint_stiffness).any()
+            foreseen = pushed if merged else 0.0 * pushed
+            without = new.copy()
+            new = new + foreseen
+            for fibre, (start, end) in enumerate(pairwise(mesh.first)):
+                part = slice(start, end)
+                eased = kick * np.where(mesh.held[part], 0.0, 1.0 / mass[part, None])
+                new[part] = _viscous(
+                    x[part], mesh.position[part], v[part], new[part], eased,
+                    scene.loss_time * stiffness[fibre], mesh.clamped[fibre], order,
+                )  # fmt: skip
+            new = new - foreseen
+            if not merged:
+                pushed[tied] = new[tied] - without[tied]
+        apart = new.copy()
+        for nodes, spring, _ in groups:
+            if np.isinf(spring).any():  # one point: an inelastic collision
+                new[nodes] = mass[nodes] @ new[nodes] / mass[nodes].sum()
+                if scene.loss_time:
+                    pushed[nodes] = new[nodes] - apart[nodes]
         _guide(mesh, new)
         v = new
         x = x + 0.5 * step * v
         out.append(x - mesh.position)
     return np.array(out)
+
+
+def _viscous(x, rest, before, after, eased, viscosity, clamped: bool, order: int):
+    """Velocities of a fibre after the midpoint rule of its viscous stresses; `eased` is the step
+    over the masses. Dense, with rows of B written out from the geometry."""
+    count, lengths = len(x), np.sqrt((np.diff(rest, axis=0) ** 2).sum(1))
+    edges = np.diff(x, axis=0)
+    length = np.sqrt((edges**2).sum(1))
+    tangent = edges / length[:, None]
+    across = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / length[:, None]
+    rows, compliance = [], []
+    for e in range(count - 1):
+        row = np.zeros((count, 2))
+        row[e + 1], row[e] = tangent[e], -tangent[e]
+        rows.append(row)
+    bent = list(range(0 if clamped else 1, count - 1))
+    for i in bent:
+        row = np.zeros((count, 2))
+        row[i + 1] += across[i]
+        row[i] -= across[i]
+        if i:
+            row[i] -= across[i - 1]
+            row[i - 1] += across[i - 1]
+        rows.append(row)
+    compliance = np.zeros((len(rows), len(rows)))
+    compliance[: count - 1, : count - 1] = np.diag(lengths / viscosity[0])
+    moments = np.zeros((len(bent), len(bent)))
+    for j, i in enumerate(bent):
+        beside = lengths[i] + (lengths[i - 1] if i else 0.0)
+        moments[j, j] = beside / (3 if order == 4 else 2)
+        if order == 4 and j:
+            moments[j, j - 1] = moments[j - 1, j] = lengths[i - 1] / 6
+    compliance[count - 1 :, count - 1 :] = moments / viscosity[1]
+    rates = np.array(rows).reshape(len(rows), -1)
+    system = compliance + 0.5 * rates @ (eased.ravel()[:, None] * rates.T)
+    stress = np.linalg.solve(system, rates @ (0.5 * (before + after)).ravel())
+    return after - eased * (rates.T @ stress).reshape(count, 2)
+
+
+def _ties(mesh: Mesh, x, order: int) -> np.ndarray:
+    """Forces on every node of springs at the ends and of bonds between chords (N)."""
+    force = np.zeros_like(x)
+    for node, root in zip(mesh.sprung, mesh.springs):
+        force[node] -= root * (root @ (x[node] - mesh.position[node]))
+    for (a, b), bond in zip(mesh.joints, mesh.bond_stiffness):
+        beside = [a - 1, a + 1, b - 1, b + 1]
+        rest = _turn(mesh.position[beside])
+        for node in (a, b):  # what a couple spread over two elements lacks of compliance
+            fibre = np.searchsorted(mesh.first, node, side="right") - 1
+            lacking = mesh.edges(fibre)[0] / mesh.scene.fibres.bending_stiffness[fibre]
+            bond = 1 / (1 / bond + lacking / (3 if order == 4 else 4)) if bond else 0.0
+        if bond:
+            force[beside] -= _gradient(lambda p, k=bond, o=rest: _bond(p, k, o), x[beside])
+    return force
+
+
+def _turn(points):
+    """Unit complex number of the angle from one chord to another, by their four ends."""
+    chords = points[..., 1::2, :] - points[..., ::2, :]
+    one, two = chords[..., 0, :], chords[..., 1, :]
+    cosine, sine = (one * two).sum(-1), one[..., 0] * two[..., 1] - one[..., 1] * two[..., 0]
+    over = 1.0 / np.sqrt((one**2).sum(-1) * (two**2).sum(-1))
+    return cosine * over, sine * over
+
+
+def _bond(points, stiffness, rest):
+    (c, s), (c0, s0) = _turn(points), rest
+    w, sine = 1 - (c * c0 + s * s0), s * c0 - c * s0
+    return 0.5 * stiffness * (sine * (1 + w / 3 + 2 * w**2 / 15)) ** 2
+
+
+def _on_path(mesh: Mesh, x, time: float, step: float) -> np.ndarray:
+    """Velocities of the nodes whose motion is given, from the middle of a step to the next one."""
+    u = _input(mesh, time + step)
+    return (mesh.position[mesh.moved] + u * mesh.path - x[mesh.moved]) / step
 
 
 def cosserat(mesh: Mesh, step: float, steps: int) -> np.ndarray:
@@ -217,9 +320,13 @@ def _outer(mesh: Mesh, time: float) -> np.ndarray:
     """Tension and drive on every node (N)."""
     scene = mesh.scene
     ramp = min(1.0, time / scene.tension_ramp) if scene.tension_ramp else 1.0
-    interval = min(int(time * scene.drive_rate), len(mesh.drive) - 1)
-    u = np.polyval(mesh.drive[interval], time - interval / scene.drive_rate)
-    return ramp * mesh.pull + u * mesh.load
+    return ramp * mesh.pull + _input(mesh, time) * mesh.load
+
+
+def _input(mesh: Mesh, time: float) -> float:
+    """The input u."""
+    interval = min(int(time * mesh.drive_rate), len(mesh.drive) - 1)
+    return np.polyval(mesh.drive[interval], time - interval / mesh.drive_rate)
 
 
 def _flow(rate: float, step: float) -> tuple[float, float]:

@@ -16,6 +16,12 @@ COMPLIANT = dict(setup="compliant")
 # their order of operations; the dead band follows round-off, see tests/engines/test_dead_band.py
 AUTHORS = dict(setup="published", dead_band=False)
 EVEN = dict(layout="exact")
+SPRUNG = dict(ends="sprung", end_stiffness=40.0)
+TIED = dict(crossing_stiffness=1e4)
+MIXED_4 = dict(diameter=(2e-3,) * 4 + (1.5e-3,) * 4, density=(1e3, 1.2e3) * 4)
+STROKE = dict(force=None, stroke=5e-3)
+MIXED = dict(diameter=(2e-3, 2e-3, 1.5e-3, 1e-3), density=(1e3, 1.2e3, 1e3, 9e2),
+             youngs_modulus=(1e8, 1e8, 2e8, 3e8))  # fmt: skip
 
 
 def moved(mesh, engine, step, **kwargs):
@@ -35,8 +41,9 @@ def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwar
     steps = 200
     mesh = build(scene, elements_per_section)
     step = step or 0.8 * largest_step(mesh, engine)
-    falling = np.array([[-1.0 / (steps * step) ** 3, 0.0, 0.0, 1.0]])  # u from 1 to 0
-    mesh = replace(mesh, drive=falling, readouts=every_node(mesh))
+    change = 1.0 / (steps * step) ** 3
+    drive = [change, 0.0, 0.0, 0.0] if scene.stroke else [-change, 0.0, 0.0, 1.0]  # from 1 to 0
+    mesh = replace(mesh, drive=np.array([drive]), readouts=every_node(mesh))
     expected = getattr(oracle, engine)(mesh, step, steps, **kwargs)
     largest = np.abs(expected).max()
     assert largest > 2e-3  # m, a diameter: far beyond the linear
@@ -57,6 +64,16 @@ def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwar
         (crosshatch(2, spacing=0.05), COMPLIANT | dict(damping=5e3)),
         (polygon(6, diameter=0.2), COMPLIANT | dict(damping=5e3)),
         (polygon(6, diameter=0.2), dict(damping=5e3)),
+        (crosshatch(2, spacing=0.05), SPRUNG | dict(tension=2.0)),
+        (polygon(6, diameter=0.2), SPRUNG | dict(tension=2.0)),
+        (crosshatch(2, spacing=0.05), dict(bond_stiffness=5e-3)),
+        (polygon(6, diameter=0.2), COMPLIANT | dict(bond_stiffness=5e-3)),
+        (crosshatch(2, spacing=0.05), STROKE | dict(loss_factor=0.3)),
+        (crosshatch(2, spacing=0.05), dict(loss_factor=0.3)),
+        (polygon(6, diameter=0.2), dict(loss_factor=10.0)),
+        (crosshatch(2, spacing=0.05), COMPLIANT | dict(loss_factor=0.3)),
+        (polygon(6, diameter=0.2), COMPLIANT | dict(loss_factor=10.0)),
+        (crosshatch(2, spacing=0.05), MIXED | dict(loss_factor=0.3, bond_stiffness=5e-3)),
     ],
     ids=[
         "clamped",
@@ -68,11 +85,21 @@ def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwar
         "damped",
         "damped-polygon",
         "damped-described",
+        "sprung",
+        "sprung-polygon",
+        "bonded",
+        "bonded-polygon",
+        "carried-viscous",
+        "viscous",
+        "viscous-polygon",
+        "viscous-compliant",
+        "viscous-compliant-polygon",
+        "mixed",
     ],
 )
 def test_kirchhoff_kernel_against_oracle(network, fields, order):
     """Pairs at the crossings of a crosshatch; three diameters meet at the hexagon's centre."""
-    scene = Scene(network, force=5.0, tension_ramp=0.0, **fields)
+    scene = Scene(network, **dict(force=5.0, tension_ramp=0.0) | fields)
     assert_follows_oracle(scene, 4, "kirchhoff", order=order)
 
 
@@ -103,8 +130,11 @@ def test_cosserat_kernel_against_oracle(network, elements_per_section, fields):
         (polygon(6), 10, COMPLIANT | dict(ends="sliding")),
         (crosshatch(4, length=0.5), None, AUTHORS),
         (polygon(6, diagonals="skip-one"), None, AUTHORS),
+        (crosshatch(4, length=0.5), 10, TIED | SPRUNG | MIXED_4 | dict(bond_stiffness=5e-3)),
+        (crosshatch(4, length=0.5), 10, TIED | SPRUNG | dict(stroke=5e-3, bond_stiffness=5e-3)),
+        (polygon(6), 10, TIED | SPRUNG | dict(bond_stiffness=5e-3, tension=0.5)),
     ],
-    ids=["compliant", "guided-hexagon", "published", "hexagon"],
+    ids=["compliant", "guided-hexagon", "published", "hexagon", "sprung", "carried", "bonded"],
 )
 def test_cosserat_against_pyelastica(network, elements_per_section, fields):
     """The authors' scenes for 2e4 steps of 5 us. Round-off, which PyElastica's angle from an arc

@@ -107,7 +107,8 @@ def test_energy_of_an_undamped_kirchhoff_fibre(order):
     speed = (velocities(moved, step)[after:] ** 2).sum(axis=2)
     kinetic = 0.5 * speed @ kirchhoff_masses(mesh, order)
     elastic = kirchhoff_energy(
-        mesh.position + moved[after:], mesh.position, mesh.scene, True, order
+        mesh.position + moved[after:], mesh.position,
+        (mesh.scene.axial_stiffness, mesh.scene.bending_stiffness), True, order,
     )
     energy = kinetic + elastic
     assert np.ptp(energy) < 5e-6 * energy.mean()
