@@ -26,6 +26,7 @@ PHYSICS = {
     "crossing_stiffness_N_m": lambda scene, _: scene.crossing_stiffness,
     "crossing_damping_Ns_m": lambda scene, _: scene.crossing_damping,
     "damping_per_s": lambda scene, _: scene.damping,
+    "loss_factor": lambda scene, _: scene.loss_factor,
     "filter_order": lambda scene, _: scene.filter_order,
     "seed": lambda scene, _: scene.seed,
     "disturbance_m": lambda scene, _: scene.disturbance,

@@ -94,12 +94,11 @@ def run_for(mesh: Mesh, engine: str, step: float, steps: int) -> Recording:
         scene,
         sample_rate=1.0 / (PER_SAMPLE * step),
         duration=duration,
-        drive_rate=rate,
         tension_ramp=min(scene.tension_ramp, 1.0 / rate),
     )
     drive = np.ascontiguousarray(spline(scene.seed, duration, rate).c.T)
     return load(engine).integrate(
-        replace(mesh, scene=scene, drive=drive), Numerics(engine, None, step)
+        replace(mesh, scene=scene, drive=drive, drive_rate=rate), Numerics(engine, None, step)
     )
 
 

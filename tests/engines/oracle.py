@@ -190,7 +190,8 @@ def _ties(mesh: Mesh, x, order: int) -> np.ndarray:
         rest = _turn(mesh.position[beside])
         for node in (a, b):  # what a couple spread over two elements lacks of compliance
             fibre = np.searchsorted(mesh.first, node, side="right") - 1
-            lacking = mesh.edges(fibre)[0] / mesh.scene.fibres.bending_stiffness[fibre]
+            element = 0.5 * np.linalg.norm(mesh.position[node + 1] - mesh.position[node - 1])
+            lacking = element / mesh.scene.fibres.bending_stiffness[fibre]
             bond = 1 / (1 / bond + lacking / (3 if order == 4 else 4)) if bond else 0.0
         if bond:
             force[beside] -= _gradient(lambda p, k=bond, o=rest: _bond(p, k, o), x[beside])

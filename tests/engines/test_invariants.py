@@ -59,7 +59,7 @@ def test_momentum_of_a_free_fibre(engine):
     momentum = np.einsum("n,tnc->tc", masses(mesh, engine), velocity)
     size = np.linalg.norm(momentum[0])
     assert np.abs(momentum - momentum[0]).max() < 1e-9 * size
-    impulse = mesh.load.sum(axis=0) / mesh.scene.drive_rate
+    impulse = mesh.load.sum(axis=0) / mesh.drive_rate
     np.testing.assert_allclose(momentum[0], impulse, rtol=1e-9)
 
 

@@ -16,7 +16,7 @@ ELEMENTS = {2: 17, 4: 10, 8: 6}
 def run(n, k, nu, gamma, order=0, engine="kirchhoff", elements=4, step=7e-5, c_m=0.1, **more):
     return {
         "setup": "compliant", "n": n, "spacing_m": 0.5 / (n + 1), "crossing_stiffness_N_m": k,
-        "crossing_damping_Ns_m": nu, "damping_per_s": gamma, "filter_order": order,
+        "crossing_damping_Ns_m": nu, "damping_per_s": gamma, "loss_factor": 0.0, "filter_order": order,
         "elements_per_section": elements, "time_step_s": step, "engine": engine, "c_m": c_m,
         "c_nl": 0.5, "c_m_se": 0.01, "c_nl_se": 0.01, "status": "ok",
     } | more  # fmt: skip
@@ -35,6 +35,7 @@ def origin():
         rows += [run(n, 70.0, nu, 10.0, c_m=0.3) for nu in (0.0, 10.0)]
         rows += [run(n, 70.0, 3.0, gamma, c_m=0.3) for gamma in (100.0, 3000.0)]
         rows += [run(n, np.inf, 0.0, gamma, c_m=0.2) for gamma in (10.0, 100.0, 3000.0)]
+        rows += [run(n, np.inf, 0.0, 10.0, loss_factor=loss, c_m=0.25) for loss in (0.1, 0.3, 1.0)]
         rows += [filtered(n, 0, elements), filtered(n, 6, elements, c_m=0.6)]
     rows += [filtered(4, 6, 5), filtered(4, 6, 10, 2.5e-6, c_m=0.7)]
     rows += [filtered(4, 6, 20, status="unstable", c_m=np.nan, c_nl=np.nan)]
@@ -62,7 +63,7 @@ def test_each_carrier_is_a_line_over_n(drawn, origin):
     """The filter's line is of the mesh and step that the run without it has, of every N."""
     ax = drawn[0].subfigs[0].axes[1]
     heights = {tuple(bar[0].get_ydata()) for bar in ax.containers}
-    assert heights == {(0.2,) * 3, (0.4,) * 3, (0.6,) * 3, (0.1,) * 3}
+    assert heights == {(0.2,) * 3, (0.25,) * 3, (0.4,) * 3, (0.6,) * 3, (0.1,) * 3}
     assert all(list(bar[0].get_xdata()) == [2, 4, 8] for bar in ax.containers)
 
 
@@ -74,7 +75,7 @@ def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
         crossings = (scene.crossing_stiffness, scene.crossing_damping, scene.damping)
         own = {"engine": "kirchhoff", "elements_per_section": 4, "time_step": 7e-5} | each.numerics
         numerics = (own[name] for name in ("engine", "elements_per_section", "time_step"))
-        at = {"setup": setup, "spacing_m": scene.network.spacing}
+        at = {"setup": setup, "spacing_m": scene.network.spacing, "loss_factor": scene.loss_factor}
         rows.append(run(scene.network.n, *crossings, scene.filter_order, *numerics, **at))
     tables = {"memory_origin": pd.DataFrame(rows), "memory_origin_baselines": BASELINES}
     figure = plotting.draw(tables, setup, "unsaved")

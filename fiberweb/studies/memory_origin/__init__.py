@@ -1,4 +1,5 @@
-"""What carries memory: the crossings, damping of fibres, or the Laplace filter, one at a time."""
+"""What carries memory: the crossings, damping of fibres, that of their material, or the Laplace
+filter, one at a time."""
 
 from __future__ import annotations
 
@@ -30,6 +31,10 @@ class MemoryOriginSection(Section):
     damping: Some[NotNegative] = key(
         [1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0], "rates of velocity damping", "1/s"
     )
+    loss_factor: Some[Positive] = key(
+        [0.02, 0.05, 0.1, 0.2, 0.3, 1.0],
+        "tan(delta) of the fibres' material at 10 Hz, with pinned crossings"
+    )  # fmt: skip
     filter_element: Some[Positive] = key(
         [ELEMENT, 2 * ELEMENT, ELEMENT / 2],
         "lengths of the elements of runs with the Laplace filter, and of the same without",
@@ -64,6 +69,9 @@ def points(section: MemoryOriginSection, lab: Lab) -> Iterator[Point]:
         for rate in dict.fromkeys([own, *section.damping]):
             pinned = {"crossing_stiffness": math.inf, "crossing_damping": 0.0, "damping": rate}
             yield Point(lab.scene(network, **pinned), "eq3")
+        pinned["damping"] = own
+        for loss in section.loss_factor:
+            yield Point(lab.scene(network, **pinned, loss_factor=loss), "eq3")
         yield from _filtered(section, lab, network)
 
 

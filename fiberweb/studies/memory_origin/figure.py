@@ -1,4 +1,4 @@
-"""What carries memory: the Laplace filter, the crossings, or the damping of the fibres.
+"""What carries memory: the Laplace filter, the crossings, or the damping of fibres or material.
 
 Drawing only: every number comes from the tables.
 """
@@ -17,13 +17,18 @@ from matplotlib.patches import Patch
 from fiberweb.figures import plots, style
 
 K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
+LOSS = "loss_factor"
+# tan(delta) of real fibres near 10 Hz: Ferry, Viscoelastic Properties of Polymers (1980), nylon and
+# silicone rubber; Yang et al., J. Appl. Phys. 97 (2005), and Blackledge et al., J. R. Soc.
+# Interface 9 (2012), dragline silk
+MATERIALS = {"nylon": (0.02, 0.1), "silicone": (0.05, 0.2), "silk": (0.1, 0.3)}
 FILTER, ELEMENTS, STEP = "filter_order", "elements_per_section", "time_step_s"
 # C_nl and C_m by N of 500 mm crosshatches, from the authors' own density table (their public
 # code repository), which Fig. 1 of the paper draws
 AUTHORS_TABLE = pd.DataFrame(
     {"c_nl": [0.535, 0.805, 0.908], "c_m": [0.165, 0.375, 0.570]}, [2, 4, 8]
 )
-NONE, SPRING, FIBRE, NUMERICS = (style.GREY, *style.colours(4)[:3])
+NONE, SPRING, FIBRE, NUMERICS, MATERIAL = (style.GREY, *style.colours(5)[:4])
 TABLE = {"color": style.INK, "marker": "_", "ms": 10, "mew": 1.4, "ls": ""}
 MARK = {"ms": 2.8, "lw": 0.8, "elinewidth": 0.7}  # small, for the bars to show
 OFF = {"mfc": "white", "mew": 0.6, "ls": ":"}
@@ -38,6 +43,7 @@ COLUMNS = {  # of panel b: title and label of x
     NU: ("Physics:\ncrossing damper", r"$\nu$ (N s/m)"),
     GAMMA: ("Physics: fibre damping,\nsprings and dampers", r"$\gamma$ (1/s)"),
     "pinned": ("Physics: fibre damping,\npinned crossings", r"$\gamma$ (1/s)"),
+    LOSS: ("Physics: material,\npinned crossings", r"$\tan\delta$ at 10 Hz"),
     FILTER: ("Numerics:\nLaplace filter", "Element length (mm)"),
 }
 
@@ -77,7 +83,8 @@ def _families(rows: pd.DataFrame) -> dict[str, pd.DataFrame]:
     of_filter = (rows[same] == rows.loc[rows[FILTER] > 0, same].iloc[0]).all(axis=1)
     return {
         "springs": rows[~pinned & ~of_filter],
-        "pinned": rows[pinned],
+        "pinned": rows[pinned & (rows[LOSS] == 0.0)],
+        "material": rows[pinned & (rows[LOSS] > 0.0)],
         "filter": rows[of_filter],
     }
 
@@ -95,9 +102,11 @@ def _of(rows: pd.DataFrame, **equal: float) -> pd.DataFrame:
 
 def _compliant_series(families: dict[str, pd.DataFrame]) -> dict:
     """Series of panel a by kind and label: rows and look."""
-    springs, pinned, filtered = families.values()
+    springs, pinned, material, filtered = families.values()
     base = _base(springs)
     strongest = pinned[GAMMA].max()
+    # the largest that a real fibre has
+    lossy = material.loc[material[LOSS] <= max(high for _, high in MATERIALS.values()), LOSS].max()
     physics = {
         rf"none: pinned crossings, $\gamma$ = {base[GAMMA]:g} /s": (
             _of(pinned, **{GAMMA: base[GAMMA]}), {"color": NONE, "marker": "o"}
@@ -107,6 +116,9 @@ def _compliant_series(families: dict[str, pd.DataFrame]) -> dict:
         ),
         rf"fibres: pinned, $\gamma$ = {strongest:g} /s": (
             _of(pinned, **{GAMMA: strongest}), {"color": FIBRE, "marker": "D"}
+        ),
+        rf"material: pinned, $\tan\delta$ = {lossy:g} at 10 Hz": (
+            _of(material, **{LOSS: lossy}), {"color": MATERIAL, "marker": "v"}
         ),
     }  # fmt: skip
     return {"Physics": physics} | _filter_series(_authors_numerics(filtered))
@@ -175,9 +187,9 @@ def _keys(ax: Axes, keys: dict[str, dict[str, Line2D]]) -> None:
 def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], baseline: pd.DataFrame) -> None:
     """C_nl above and C_m below, one column for each thing that is changed."""
     axes = part.subplots(
-        2, len(COLUMNS), sharey=True, sharex="col", width_ratios=[1, 1, 1, 1, 1.35]
+        2, len(COLUMNS), sharey=True, sharex="col", width_ratios=[1, 1, 1, 1, 1, 1.35]
     )
-    springs, pinned, filtered = families.values()
+    springs, pinned, material, filtered = families.values()
     base = _base(springs)
     sizes = sorted(pd.concat(families.values())["n"].unique())
     colour = plots.colours(sizes)
@@ -186,9 +198,10 @@ def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], baseline: pd.Dat
             others = {key: value for key, value in base.items() if key != column}
             _lines(ax, _of(springs, **others), column, name, colour)
         _lines(row[3], pinned, GAMMA, name, colour)
+        _lines(row[4], material, LOSS, name, colour)
         for ax, column in zip(row, (K, NU, GAMMA, GAMMA), strict=False):
             ax.axvline(base[column], color=style.FAINT, lw=2.5, zorder=0)
-        _filter(row[4], filtered, name, colour)
+        _filter(row[5], filtered, name, colour)
         for ax in row:
             ax.set_ylim(*AXIS)
             for value in baseline[name] if ax is not row[-1] else ():
@@ -204,14 +217,19 @@ def _sweeps(part: SubFigure, families: dict[str, pd.DataFrame], baseline: pd.Dat
 
 
 def _scales(lowest: np.ndarray) -> None:
-    for ax in lowest[[0, 2, 3]]:
+    for ax in lowest[[0, 2, 3, 4]]:
         ax.set_xscale("log")
     lowest[1].set_xscale("symlog", linthresh=1.0)
     lowest[1].set_xticks([0, 1, 3, 10], ["0", "1", "3", "10"])
     lowest[0].set_xticks([10.0**power for power in (1, 3, 5)])
     for ax in lowest[2:4]:
         ax.set_xticks([1.0, 10.0, 100.0, 1000.0])
-    for ax in lowest[:4]:
+    lowest[4].set_xticks([0.03, 0.1, 0.3, 1.0], ["0.03", "0.1", "0.3", "1"])
+    for place, (name, (low, high)) in enumerate(MATERIALS.items()):
+        height = 0.98 - 0.09 * place
+        lowest[4].plot([low, high], [height, height], color=style.GREY, lw=1.5)
+        lowest[4].text(1.15 * high, height, name, fontsize=5.5, va="center", color=style.GREY)
+    for ax in lowest[:5]:
         ax.minorticks_off()
 
 
