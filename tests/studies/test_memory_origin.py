@@ -83,7 +83,7 @@ def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
         lambda artist: isinstance(artist, Axes) and "Fibres" in artist.get_xlabel()
     )
     for ax in (nonlinear, memory):
-        assert len(ax.containers) == (5 if setup == "compliant" else 2)
+        assert len(ax.containers) == (6 if setup == "compliant" else 2)
         assert all(set(bar[0].get_xdata()) == {2, 4, 8} for bar in ax.containers)
 
 

@@ -36,14 +36,14 @@ ASIDE = 2.5  # points to the side of marks that nearly agree
 TINTED = "Numerics (the authors' crossings)"
 TINT = "#f1efe9"  # behind what is numerics
 AUTHORS_ELEMENT = 10.0  # mm
-KEY_LINE = 0.072  # share of the height of panel a
+KEY_LINE = 0.069  # share of the height of panel a
 AXIS = (-0.03, 1.03)
 COLUMNS = {  # of panel b: title and label of x
-    K: ("Physics:\ncrossing spring", "$k$ (N/m)"),
-    NU: ("Physics:\ncrossing damper", r"$\nu$ (N s/m)"),
-    GAMMA: ("Physics: fibre damping,\nsprings and dampers", r"$\gamma$ (1/s)"),
-    "pinned": ("Physics: fibre damping,\npinned crossings", r"$\gamma$ (1/s)"),
-    LOSS: ("Physics: material,\npinned crossings", r"$\tan\delta$ at 10 Hz"),
+    K: ("Crossing\nspring", "$k$ (N/m)"),
+    NU: ("Crossing\ndamper", r"$\nu$ (N s/m)"),
+    GAMMA: ("Fibre damping,\nsprings, dampers", r"$\gamma$ (1/s)"),
+    "pinned": ("Fibre damping,\npinned", r"$\gamma$ (1/s)"),
+    LOSS: ("Material,\npinned", r"$\tan\delta$ at 10 Hz"),
     FILTER: ("Numerics:\nLaplace filter", "Element length (mm)"),
 }
 
@@ -117,7 +117,7 @@ def _compliant_series(families: dict[str, pd.DataFrame]) -> dict:
         rf"fibres: pinned, $\gamma$ = {strongest:g} /s": (
             _of(pinned, **{GAMMA: strongest}), {"color": FIBRE, "marker": "D"}
         ),
-        rf"material: pinned, $\tan\delta$ = {lossy:g} at 10 Hz": (
+        rf"material: pinned, $\tan\delta$ = {lossy:g}": (
             _of(material, **{LOSS: lossy}), {"color": MATERIAL, "marker": "v"}
         ),
     }  # fmt: skip
@@ -228,7 +228,7 @@ def _scales(lowest: np.ndarray) -> None:
     for place, (name, (low, high)) in enumerate(MATERIALS.items()):
         height = 0.98 - 0.09 * place
         lowest[4].plot([low, high], [height, height], color=style.GREY, lw=1.5)
-        lowest[4].text(1.15 * high, height, name, fontsize=5.5, va="center", color=style.GREY)
+        lowest[4].text(1.15 * high, height, name, fontsize=6, va="center", color=style.GREY)
     for ax in lowest[:5]:
         ax.minorticks_off()
 
