@@ -51,14 +51,13 @@ class Run:
     @cached_property
     def name(self) -> str:
         """For instance crosshatch-n04-s100.0mm-f50.1mN-t10.0mN-3fa9c15d20b7, SI prefixes."""
-        network = self.scene.network
+        network, stroke = self.scene.network, self.scene.stroke
         told_by = json.dumps([self.scene.distinct(), self.numerics], sort_keys=True)
         parts = [
             network.topology,
             f"n{network.n:02d}",
             f"s{1e3 * network.spacing:.1f}mm",
-            f"x{1e3 * self.scene.stroke:.1f}mm" if self.scene.stroke
-            else f"f{1e3 * self.scene.force:.1f}mN",
+            f"x{1e3 * stroke:.1f}mm" if stroke else f"f{1e3 * self.scene.force:.1f}mN",
             f"t{1e3 * self.scene.tension:.1f}mN",
             "" if self.scene.setup == "described" else self.scene.setup,
             hashlib.sha256(told_by.encode()).hexdigest()[:DIGITS],

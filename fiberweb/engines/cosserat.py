@@ -16,7 +16,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fiberweb.engines import authors_rotations, energy, laplace, stepping, ties, viscosity
+from fiberweb.engines import (
+    authors_rotations,
+    energy,
+    laplace,
+    stepping,
+    ties,
+    viscosity,
+    viscosity_elements,
+)
 from fiberweb.engines import cosserat_passes as passes
 from fiberweb.engines.base import Numerics, Recording, record_in_chunks
 from fiberweb.engines.cosserat_stiffness import largest_step as largest_step
@@ -251,7 +259,7 @@ def advance(
                 following = stepping.drive_value(forcing.drive, forcing.drive_rate, time + step)
                 ties.carry(tied.motor, x, y, vx, vy, following, step)
             if damped:
-                viscosity.damp_elements(viscous, state, scratch, rods, stride)
+                viscosity_elements.damp_elements(viscous, state, scratch, rods, stride)
             if carried:
                 mean = 0.5 * (since + following - u)
                 work = ties.motor_work(
@@ -268,7 +276,7 @@ def advance(
                 passes.hold(kicked, held)
                 lost = passes.damper_power(kicked, spin, ledger)
                 if damped:
-                    lost += viscosity.elements_power(viscous, kicked, stride)
+                    lost += viscosity_elements.elements_power(viscous, kicked, stride)
             if filtered:
                 laplace.filter_velocities(views, filtering, scratch.difference, stride)
             passes.hold(state, held)

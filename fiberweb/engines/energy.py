@@ -34,8 +34,8 @@ class Ledger(NamedTuple):
 def build_ledger(
     mesh: Mesh, layout: Layout, interleaving: Interleaving, mass: np.ndarray
 ) -> Ledger:
-    """An empty ledger; the mass of the nodes is in the order of the kernels. What a motor carries is
-    the motor's, and has none."""
+    """An empty ledger; the mass of the nodes is in the order of the kernels. What a motor carries
+    is the motor's, and has none."""
     mass = mass.copy()
     mass[interleaving.place[layout.at[mesh.moved]]] = 0.0
     # unsigned, since Numba looks for negative indices at every access otherwise

@@ -173,16 +173,10 @@ def advance(
     before, kicked = crossings.no_motion(groups.members.shape[0]), np.zeros(groups.members.shape[0])
     mean_x, mean_y = vx.copy(), vy.copy()
     carried, damped = tied.motor.nodes.shape[0] > 0, viscous.moment.shape[0] > 0
-    merged = tied.merged
     bonded, still = tied.bonds.a.shape[0] > 0, np.zeros(vx.shape[0])
     since = ties.grown(forcing, first * per_sample, step)  # what u grew by in the step before
     damping = viscosity.views(viscous, scratch, rods, state, stride)
-    n = len(viscous.force_x)
-    edge, behind = slice(0, n - stride), slice(stride, n)
-    power = (
-        viscous.force_x[edge], viscous.force_y[edge], mean_x[edge], mean_x[behind], mean_y[edge],
-        mean_y[behind],
-    )  # fmt: skip
+    viscous_power = viscosity.power_views(viscous, mean_x, mean_y, stride)
     every = 1 if damped else energy.interval_steps(step)  # what is stiff dissipates by jerks
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
@@ -218,21 +212,22 @@ def advance(
                 mean_x[:], mean_y[:] = vx, vy
             if damped:
                 viscous.before_x[:], viscous.before_y[:] = vx, vy
-            if carried:  # before the kick, which leaves them alone and drifts them
-                following = stepping.drive_value(
-                    forcing.drive, forcing.drive_rate, (k + 1.5) * step
-                )
+            if carried:  # before the kick, which decays and drifts them
+                after = (k + 1.5) * step
+                following = stepping.drive_value(forcing.drive, forcing.drive_rate, after)
                 ties.carry(tied.motor, x, y, vx, vy, following, step * rods.decay)
             passes.kick_pass(*kick_x, rods.decay, step)
             passes.kick_pass(*kick_y, rods.decay, step)
-            if damped and merged:
+            if not damped:
+                tie(pairs, groups, relative, before, kicked, state, step)
+            elif tied.merged:  # made one point last, so that they are
                 viscosity.foresee(viscous, x, y, vx, vy, step, 1.0)
                 viscosity.damp(viscous, damping, step, stride)
                 viscosity.foresee(viscous, x, y, vx, vy, step, -1.0)
                 viscosity.look(viscous, vx, vy)
                 tie(pairs, groups, relative, before, kicked, state, step)
                 viscosity.learn(viscous, vx, vy)
-            elif damped:
+            else:  # springs first, or viscous stresses after them would limit the step
                 viscosity.foresee(viscous, x, y, vx, vy, step, 1.0)
                 tie(pairs, groups, relative, before, kicked, state, step)
                 viscosity.foresee(viscous, x, y, vx, vy, step, -1.0)
@@ -240,18 +235,15 @@ def advance(
                 viscosity.damp(viscous, damping, step, stride)
                 viscosity.learn(viscous, vx, vy)
                 crossings.gather_pairs(pairs, relative, x, y, vx, vy)
-            else:
-                tie(pairs, groups, relative, before, kicked, state, step)
             if carried:
                 mean = 0.5 * (since + following - u)
-                work = ties.motor_work(
-                    tied.motor, scratch.tension, scratch.length, outer_x, outer_y, mean, stride
-                )
-                if damped:
-                    work += ties.motor_work(
-                        tied.motor, viscous.force_x, viscous.force_y, still, still, mean, stride
-                    )
+                fx, fy = scratch.tension, scratch.length  # as `force_pass` leaves them
+                work = ties.motor_work(tied.motor, fx, fy, outer_x, outer_y, mean, stride)
                 energy.enter_work(ledger, work)
+                if damped:
+                    fx, fy = viscous.force_x, viscous.force_y
+                    work = ties.motor_work(tied.motor, fx, fy, still, still, mean, stride)
+                    energy.enter_work(ledger, work)
                 since = following - u
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
@@ -260,7 +252,7 @@ def advance(
                 lost = ledger.damping * energy.squared_speed(mean_x, mean_y, ledger.mass)
                 lost += energy.joint_power(ledger, mean_x, mean_y)
                 if damped:
-                    lost += viscosity.edge_power(*power)
+                    lost += viscosity.edge_power(*viscous_power)
                 energy.enter_dissipation(ledger, due * step, lost)
         if grown > ramp:
             pulled = energy.pull_work(x - 0.5 * step * vx, y - 0.5 * step * vy, readouts, forcing)

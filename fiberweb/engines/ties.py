@@ -22,7 +22,6 @@ from fiberweb.engines.layout import Interleaving, Layout
 from fiberweb.engines.stepping import drive_value
 from fiberweb.model.mesh import Mesh
 
-
 # The bending energy that a couple M has in two elements is (M / 2)^2 l / EI at a point. Spread as
 # two forces it is a third of that (moments of a cubic spline), or nothing (those of a chain, at
 # nodes), of which a compliance of 1/3 or 1/4 l / EI is missing.
@@ -129,7 +128,8 @@ def stiffness(mesh: Mesh, layout: Layout, lateral: csr_array) -> csr_array:
         both = lateral[number[nodes - 1]] + lateral[number[nodes]]
         return diags_array(1.0 / chords) @ both
 
-    return springs_stiffness(mesh, layout, columns) + _squared(turn(b) - turn(a), bonds(mesh, "spline"))
+    bonded = _squared(turn(b) - turn(a), bonds(mesh, "spline"))
+    return springs_stiffness(mesh, layout, columns) + bonded
 
 
 def springs_stiffness(mesh: Mesh, layout: Layout, columns: int) -> csr_array:

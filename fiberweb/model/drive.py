@@ -9,7 +9,6 @@ from scipy.interpolate import CubicSpline
 from fiberweb.model.authors import KNOTS, SEED, clock
 from fiberweb.model.scene import Scene
 
-
 TABLE_RATE = 100.0  # Hz, at which the experiment's motor is given its angles
 
 

@@ -14,7 +14,6 @@ from scipy.linalg import expm
 
 from fiberweb.model.buckling import second_moment
 from fiberweb.model.mesh import Mesh
-from fiberweb.model.scene import Scene
 
 
 def kirchhoff_energy(nodes, rest, stiffness, clamped: bool, order: int = 4):

@@ -106,10 +106,8 @@ def test_energy_of_an_undamped_kirchhoff_fibre(order):
     moved = recording.displacement
     speed = (velocities(moved, step)[after:] ** 2).sum(axis=2)
     kinetic = 0.5 * speed @ kirchhoff_masses(mesh, order)
-    elastic = kirchhoff_energy(
-        mesh.position + moved[after:], mesh.position,
-        (mesh.scene.axial_stiffness, mesh.scene.bending_stiffness), True, order,
-    )
+    stiffness = mesh.scene.axial_stiffness, mesh.scene.bending_stiffness
+    elastic = kirchhoff_energy(mesh.position + moved[after:], mesh.position, stiffness, True, order)
     energy = kinetic + elastic
     assert np.ptp(energy) < 5e-6 * energy.mean()
     drift = np.polyfit(np.linspace(0.0, 1.0, steps), energy, 1)[0]

@@ -65,18 +65,14 @@ def test_axial_frequencies_of_a_fibre_on_a_spring(engine):
     every = round(1 / (8 * expected[-1] * step))
     end = run(mesh, engine, step, round(6 / (expected[0] * every * step)), every)[:, -1, 0]
     after = int(0.3 / expected[0] / (every * step)) + 2
-    np.testing.assert_allclose(
-        frequencies(end[after:], 1 / (every * step), 2), expected, rtol=1e-2
-    )
+    np.testing.assert_allclose(frequencies(end[after:], 1 / (every * step), 2), expected, rtol=1e-2)
 
 
 def carried(length: float, elements: int, stroke: float, u: CubicSpline, **scene):
     """A pinned, sliding fibre whose middle goes where a spline of u carries it."""
     mesh = held(length, elements, ends="sliding", force=None, stroke=stroke, **scene)
     drive = np.ascontiguousarray(u.c.T)
-    return replace(
-        mesh, drive=drive, drive_rate=1.0 / (u.x[1] - u.x[0]), readouts=every_node(mesh)
-    )
+    return replace(mesh, drive=drive, drive_rate=1.0 / (u.x[1] - u.x[0]), readouts=every_node(mesh))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -228,9 +224,7 @@ def test_engines_agree_to_the_meshs_error():
     least 2.5 times closer."""
     apart = []
     for elements in (8, 16):
-        scene = Scene(
-            crosshatch(2, spacing=0.1), stroke=2e-3, duration=1.0, **TIED | EVERYTHING
-        )
+        scene = Scene(crosshatch(2, spacing=0.1), stroke=2e-3, duration=1.0, **TIED | EVERYTHING)
         one, other = (
             simulate(scene, engine=engine, elements_per_section=elements).displacement.values
             for engine in PLANAR

@@ -146,9 +146,7 @@ def test_no_loss_factor_costs_the_step(loss, setup):
     """The limit is that without; just below it a run of any viscosity is stable, with crossings
     that are one point and with springs, and its energy book closes, but for what an absurd
     viscosity makes of the crossings' dampers."""
-    scene = Scene(
-        crosshatch(4, length=0.5), setup=setup, duration=1.0, loss_factor=loss, force=0.3
-    )
+    scene = Scene(crosshatch(4, length=0.5), setup=setup, duration=1.0, loss_factor=loss, force=0.3)
     plain = replace(scene, loss_factor=0.0)
     limit = largest_step(build(scene, 4), "kirchhoff")
     assert limit == largest_step(build(plain, 4), "kirchhoff")
@@ -194,5 +192,5 @@ def test_a_rigid_turn_is_not_damped():
 
 def test_pyelastica_refuses_what_it_has_not():
     mesh = build(Scene(crosshatch(2, spacing=0.1), "compliant", loss_factor=0.1), 4)
-    with pytest.raises(ValueError, match="loss_factor = 0.1: PyElastica has no material damping"):
+    with pytest.raises(ValueError, match="PyElastica has no material damping"):
         engines.load("elastica").refuse(mesh)

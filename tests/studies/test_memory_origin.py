@@ -16,7 +16,8 @@ ELEMENTS = {2: 17, 4: 10, 8: 6}
 def run(n, k, nu, gamma, order=0, engine="kirchhoff", elements=4, step=7e-5, c_m=0.1, **more):
     return {
         "setup": "compliant", "n": n, "spacing_m": 0.5 / (n + 1), "crossing_stiffness_N_m": k,
-        "crossing_damping_Ns_m": nu, "damping_per_s": gamma, "loss_factor": 0.0, "filter_order": order,
+        "crossing_damping_Ns_m": nu, "damping_per_s": gamma, "loss_factor": 0.0,
+        "filter_order": order,
         "elements_per_section": elements, "time_step_s": step, "engine": engine, "c_m": c_m,
         "c_nl": 0.5, "c_m_se": 0.01, "c_nl_se": 0.01, "status": "ok",
     } | more  # fmt: skip
