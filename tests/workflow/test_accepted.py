@@ -32,7 +32,7 @@ def leaves(section: type[BaseModel], value: dict, path=()):
 def near(value) -> st.SearchStrategy:
     """Values like one in a config: of its kind, in and out of what can be run."""
     if isinstance(value, list):
-        return st.lists(near(value[0]), min_size=1, max_size=3)
+        return st.lists(near(value[0]), min_size=1, max_size=3) if value else st.just(value)
     if isinstance(value, bool) or value is None:
         return st.sampled_from([True, False, None, 0, 1, 2.0, "kirchhoff", "cosserat", "sliding"])
     if isinstance(value, (int, float)):
