@@ -56,7 +56,13 @@ def side_by_side(*meshes: Mesh) -> Mesh:
         for name in ("position", "held", "clamped", "pull", "load", "start")
     }
     together["first"] = np.r_[0, np.concatenate([m.first[1:] + o for m, o in zip(meshes, offset)])]
-    mesh = replace(meshes[0], **together)
+    networks = [mesh.scene.network for mesh in meshes]
+    network = replace(
+        networks[0],
+        fibres=np.concatenate([each.fibres for each in networks]),
+        stations=sum((each.stations for each in networks), ()),
+    )
+    mesh = replace(meshes[0], scene=replace(meshes[0].scene, network=network), **together)
     return replace(mesh, readouts=every_node(mesh))
 
 
