@@ -18,7 +18,7 @@ AUTHORS = dict(setup="published", dead_band=False)
 EVEN = dict(layout="exact")
 SPRUNG = dict(ends="sprung", end_stiffness=40.0)
 TIED = dict(crossing_stiffness=1e4)
-MIXED_4 = dict(diameter=(2e-3,) * 4 + (1.5e-3,) * 4, density=(1e3, 1.2e3) * 4)
+MIXED_4 = dict(diameter=(2e-3,) * 4 + (1.5e-3,) * 4, density=(1.6e3, 1.75e3) * 4)
 STROKE = dict(force=None, stroke=5e-3)
 MIXED = dict(diameter=(2e-3, 2e-3, 1.5e-3, 1e-3), density=(1e3, 1.2e3, 1e3, 9e2),
              youngs_modulus=(1e8, 1e8, 2e8, 3e8))  # fmt: skip

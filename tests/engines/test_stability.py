@@ -92,7 +92,7 @@ def test_fibres_gone_are_seen_beside_one_that_is_well(engine):
     one = single_fibre()
     mesh = side_by_side(one, one, one)
     mesh = replace(
-        mesh, drive=one.drive, scene=one.scene, joints=np.add([[5, 6]], mesh.first[1:3]),
+        mesh, drive=one.drive, joints=np.add([[5, 6]], mesh.first[1:3]),
         joint_stiffness=np.array([70.0]), joint_damping=np.array([1000.0]),
     )  # fmt: skip
     recording = record(mesh, engine, 0.9 * largest_step(one, engine), samples=3)
