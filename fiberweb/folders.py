@@ -37,6 +37,8 @@ def folder(value: object, key: str) -> object:
         raise ValueError(
             f"{key} = {value!r}: there is no such home folder or variable: spell it out"
         )
+    if text == os.path.dirname(text):
+        raise ValueError(f"{key} = {value!r}: that is the whole disk: name a folder on it")
     return os.getcwd() if text == "." else text
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import date
 from pathlib import Path
 
@@ -41,6 +41,19 @@ def check_keys(path: str | Path) -> None:
     for key, first, second in _twice(node, ()):
         lines = f"line {first}" if first == second else f"lines {first} and {second}"
         raise ValueError(f"{path} gives {key} twice, in {lines}: keep one of them")
+
+
+def check_call(arguments: Sequence[str]) -> None:
+    """Raise ValueError, one sentence, if ``--config`` gives a key twice.
+
+    Of ``--config 'scene={duration: 20, duration: 30}'`` Snakemake would keep the last one. Groups
+    given in two parts are one group.
+    """
+    given = set()
+    for key in _given_keys(arguments):
+        if key in given:
+            raise ValueError(f"--config gives {key} twice: keep one of them")
+        given.add(key)
 
 
 def overlay(below: Mapping, above: Mapping) -> dict:
@@ -87,6 +100,34 @@ def _typed(value):
     if isinstance(read, str) and is_number(read):
         return float(read)  # 1e3, which YAML takes for text
     return value if isinstance(read, (Mapping, list, date)) else read
+
+
+def _given_keys(arguments: Sequence[str]) -> Iterator[str]:
+    """Every key that follows ``--config``, within groups as well."""
+    import yaml
+
+    within = False
+    for argument in arguments:
+        option, _, first = argument.partition("=")
+        if argument.startswith("-"):
+            within = option in ("--config", "-C")
+            argument = first
+        name, _, text = argument.partition("=")
+        if within and name:
+            try:
+                yield from _leaves(yaml.compose(text), (name,))
+            except yaml.YAMLError:  # text to Snakemake, too
+                yield name
+
+
+def _leaves(node, above: tuple[str, ...]) -> Iterator[str]:
+    import yaml
+
+    if not isinstance(node, yaml.MappingNode):
+        yield ".".join(above)
+        return
+    for key, value in node.value:
+        yield from _leaves(value, (*above, str(key.value)))
 
 
 def _text(path: str | Path) -> str:

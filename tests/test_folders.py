@@ -34,7 +34,7 @@ def test_this_folder_has_a_name():
         ("o{u}t", "'{' stands"), ("<out>", "'<' stands"), ("out*", "'*' stands"),
         (datetime.date(2024, 1, 1), "2024-01-01: that was read as a date"), (1e3, "a float"),
         (750, "a int"), (True, "a bool"), ("$NO_SUCH_PLACE/out", "spell it out"),
-        ("~no-such-user/out", "spell it out"),
+        ("~no-such-user/out", "spell it out"), ("/", "the whole disk"), ("//", "the whole disk"),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("key", ["results", "published_tables"])

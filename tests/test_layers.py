@@ -3,7 +3,7 @@
 import pytest
 
 from fiberweb.config import load
-from fiberweb.layers import check_keys, read, typed
+from fiberweb.layers import check_call, check_keys, read, typed
 
 TWICE = {
     "yaml": ("scene:\n  duration: 20\n  seed: 1\n  duration: 30\n", "scene.duration", "2 and 4"),
@@ -59,3 +59,22 @@ def test_what_the_command_line_gives_within_a_group_is_what_a_file_would(text, v
     given = {"results": "1e3", "scene": {"key": text, "list": [text], "group": {"key": text}}}
     group = {"key": value, "list": [value], "group": {"key": value}}
     assert typed(given) == {"results": "1e3", "scene": group}
+
+
+@pytest.mark.parametrize(
+    ("call", "key"),
+    [
+        (["--config", "scene={seed: 1, seed: 2}"], "scene.seed"),
+        (["-C", "results=a", "scene={seed: 1}", "scene={seed: 2}", "--dry-run"], "scene.seed"),
+        (["--config=results=a", "-C", "results=b"], "results"),
+        (["--config", "setups={published: {ends: null, 'ends': pinned}}"], "setups.published.ends"),
+    ],
+)
+def test_a_key_given_twice_on_the_command_line_is_refused(call, key):
+    with pytest.raises(ValueError, match=rf"--config gives {key} twice: keep one of them"):
+        check_call(["snakemake", "figures", *call])
+
+
+def test_groups_in_parts_and_other_options_are_no_key_twice():
+    call = ["--config", "scene={seed: 1}", "scene={duration: 2}", "results={a", "n=[1, 1]"]
+    check_call(["snakemake", *call, "--set-threads", "simulate=2", "--set-resources", "simulate=2"])

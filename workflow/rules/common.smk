@@ -11,7 +11,7 @@ from snakemake.exceptions import WorkflowError
 from fiberweb import studies
 from fiberweb.config import check_folders, load
 from fiberweb.errors import unknown_key
-from fiberweb.layers import check_keys, typed
+from fiberweb.layers import check_call, check_keys, typed
 from fiberweb.model.scene import SETUPS
 from fiberweb.provenance import add_call
 from fiberweb.recipes import BEST, Recipes, code, digest_of
@@ -104,6 +104,7 @@ FIGURES = studies.makers("FIGURES")
 try:
     for path in workflow.configfiles:
         check_keys(path)  # Snakemake read them, and kept the last of two
+    check_call(sys.argv)
     CONFIG = load(config, typed(workflow.config_settings.config))
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
