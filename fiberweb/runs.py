@@ -64,6 +64,11 @@ class Run:
         ]
         return "-".join(filter(None, parts))
 
+    @property
+    def engine(self) -> str:
+        """Which engine runs this."""
+        return request(self.scene, **self.numerics).engine
+
     def check(self) -> None:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""
         from fiberweb.simulation.plan import plan

@@ -31,17 +31,16 @@ def accepts(name: str, mesh: Mesh) -> bool:
     return True
 
 
-def warmup() -> None:
-    """Compile every kernel into the persistent cache, by running each engine for an instant."""
+def warmup(name: str) -> None:
+    """Compile the kernels of an engine into the persistent cache, by running it for an instant."""
     from fiberweb.engines.base import Numerics
     from fiberweb.model.authors import STEP
     from fiberweb.model.mesh import build
     from fiberweb.model.network import crosshatch
     from fiberweb.model.scene import Scene
 
-    # the first that an engine can run: the published one has the filter
+    # the first that the engine can run: the published one has the filter
     setups = ("published", "described", "compliant")
     scenes = [Scene(crosshatch(2, spacing=0.1), setup, duration=0.01) for setup in setups]
-    for name in ENGINES:
-        mesh = next(mesh for mesh in (build(scene, 4) for scene in scenes) if accepts(name, mesh))
-        load(name).integrate(mesh, Numerics(name, 4, STEP))
+    mesh = next(mesh for mesh in (build(scene, 4) for scene in scenes) if accepts(name, mesh))
+    load(name).integrate(mesh, Numerics(name, 4, STEP))

@@ -15,9 +15,9 @@ from functools import wraps
 from pathlib import Path
 
 import numba
-from numba.core.caching import Cache
+from numba.core.caching import Cache, CacheImpl, UserProvidedCacheLocator
 
-from fiberweb.source import source_hash
+from fiberweb.source import ROOT, source_hash
 
 
 def folder() -> Path:
@@ -68,6 +68,17 @@ def _or_none(load):
     return loaded
 
 
+class _OfAnyClone(UserProvidedCacheLocator):
+    """Where a kernel of this package is kept: not by the path of its file, as Numba's own do, so
+    that clones of the same sources share what is compiled."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        if Path(py_file).is_relative_to(ROOT):
+            return Path(py_file).parent.name
+        return super().get_suitable_cache_subpath(py_file)
+
+
 def use() -> None:
     """Have Numba keep what is compiled from now on in `folder`.
 
@@ -75,4 +86,5 @@ def use() -> None:
     be long ago, and is handed down to processes that would put a folder into this one.
     """
     numba.config.CACHE_DIR = str(folder())
+    CacheImpl._locator_classes = [_OfAnyClone, *CacheImpl._locator_classes]
     Cache.load_overload = _or_none(Cache.load_overload)

@@ -38,7 +38,7 @@ def square(x):
 
 
 @pytest.mark.slow
-def test_an_edited_kernel_runs_though_the_place_is_given(tmp_path):
+def test_an_edited_kernel_runs_and_clones_share_it_though_the_place_is_given(tmp_path):
     """As clusters do; its caller is in another file, which did not change."""
     package = shutil.copytree(source.ROOT, tmp_path / "fiberweb")
     engines = package / "engines"
@@ -47,15 +47,21 @@ def test_an_edited_kernel_runs_though_the_place_is_given(tmp_path):
         file.write("\nfrom fiberweb.engines import toy_callee as toy_callee\n")
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "c")}
     environment.pop("FIBERWEB_CACHE", None)
-    asked = "from fiberweb.engines.toy_caller import call; print(call())"
-    for value in ("1", "2"):
-        (engines / "toy_callee.py").write_text(CALLEE.replace("1", value))
+    asked = "from fiberweb.engines.toy_caller import call;print(call(), len(call.stats.cache_hits))"
+
+    def printed(folder):
         done = subprocess.run(
             [sys.executable, "-c", asked],
-            cwd=tmp_path, env=environment, capture_output=True, text=True,
+            cwd=folder, env=environment, capture_output=True, text=True,
         )  # fmt: skip
-        assert done.stdout == f"{value}\n", done.stderr
+        return done.stdout or done.stderr
+
+    for value in ("1", "2"):
+        (engines / "toy_callee.py").write_text(CALLEE.replace("1", value))
+        assert printed(tmp_path) == f"{value} 0\n"
     assert len(list((tmp_path / "c").iterdir())) == 2  # one folder for each state of the sources
+    shutil.copytree(package, tmp_path / "clone" / "fiberweb")
+    assert printed(tmp_path / "clone") == "2 1\n"  # compiled for the other, of the same sources
 
 
 @pytest.mark.parametrize("given", ["FIBERWEB_CACHE", "NUMBA_CACHE_DIR", "HOME"])

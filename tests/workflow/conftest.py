@@ -1,4 +1,4 @@
-"""A copy of the tree, so that files can be edited, with a kernel cache of its own."""
+"""A copy of the tree, so that files can be edited."""
 
 import os
 import re
@@ -24,11 +24,7 @@ class Tree:
             source = ROOT / name
             copy = shutil.copytree if source.is_dir() else shutil.copy2
             copy(source, self.folder / name)
-        self.environment = os.environ | {
-            "PYTHONPATH": str(self.folder),
-            "FIBERWEB_CACHE": str(folder / "cache"),
-        }
-        self.environment.pop("NUMBA_CACHE_DIR", None)
+        self.environment = os.environ | {"PYTHONPATH": str(self.folder)}
 
     def snakemake(self, *arguments, cores=2):
         """Standard error of a call that must succeed."""

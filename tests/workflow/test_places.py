@@ -34,7 +34,7 @@ def test_an_interpreter_in_a_folder_with_a_blank(smoked, elsewhere):
 @pytest.mark.slow
 def test_called_from_elsewhere(smoked, tmp_path, edited):
     """What is made lies there, and hangs on the code here."""
-    folder, target = tmp_path / "data", "results/warmup.done"
+    folder, target = tmp_path / "data", "results/warmup/kirchhoff.done"
     folder.mkdir()
     environment = {key: value for key, value in smoked.environment.items() if key != "PYTHONPATH"}
     for place in (("--directory", str(folder)), ()):

@@ -51,7 +51,7 @@ rule accuracy:
 
 rule exudyn:
     input:
-        compiled="<results>/warmup.done",
+        compiled=[compiled(engine) for engine in ENGINES],
     output:
         "<results>/tables/exudyn.csv",
     log:
@@ -70,7 +70,7 @@ rule exudyn:
 
 rule speed_accuracy:
     input:
-        compiled="<results>/warmup.done",
+        compiled=[compiled(engine) for engine in ENGINES],
         exudyn=EXUDYN,
     output:
         "<results>/tables/speed_accuracy.csv",
@@ -92,7 +92,7 @@ rule speed_accuracy:
 
 rule model_ladder:
     input:
-        compiled="<results>/warmup.done",
+        compiled=[compiled(engine) for engine in ENGINES],
     output:
         ladder="<results>/tables/model_ladder.csv",
         plane="<results>/tables/out_of_plane.csv",
@@ -115,7 +115,7 @@ rule model_ladder:
 
 rule stability:
     input:
-        compiled="<results>/warmup.done",
+        compiled=[compiled(engine) for engine in ENGINES],
     output:
         limits="<results>/tables/stability.csv",
         drift="<results>/tables/energy_drift.csv",

@@ -10,6 +10,7 @@ from snakemake.exceptions import WorkflowError
 
 from fiberweb import studies
 from fiberweb.config import check_folders, load
+from fiberweb.engines import ENGINES
 from fiberweb.errors import unknown_key
 from fiberweb.layers import check_call, check_keys, typed
 from fiberweb.model.scene import SETUPS
@@ -47,6 +48,10 @@ def made():
     )
     counts = [(f"{n} file{'s' * (n > 1)}", folder) for folder, n in sorted(folders.items())]
     return ", ".join(f"{files} in {folder}" for files, folder in counts)
+
+
+def compiled(engine):
+    return f"{RESULTS}/warmup/{engine}.done"
 
 
 def response(run):
@@ -135,3 +140,4 @@ wildcard_constraints:
     table="|".join(TABLES),
     figure="|".join(FIGURES),
     recording="[^/]+",
+    engine="|".join(ENGINES),

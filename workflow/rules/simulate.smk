@@ -5,17 +5,17 @@ rule warmup:
     input:
         make_whole,
     output:
-        touch("<results>/warmup.done"),
+        touch("<results>/warmup/{engine}.done"),
     log:
-        "<logs>/warmup.log",
+        "<logs>/warmup/{engine}.log",
     benchmark:
-        "<benchmarks>/warmup.tsv"
+        "<benchmarks>/warmup/{engine}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
         recipe=code("warmup", "fiberweb.engines"),
     message:
-        "Compiling the engines, once"
+        "Compiling the engine {wildcards.engine}, once"
     script:
         "../scripts/warmup.py"
 
@@ -23,7 +23,7 @@ rule warmup:
 rule simulate:
     input:
         # not ancient(): where warmup has to run, Snakemake 9.27 then overlooks every simulation
-        compiled="<results>/warmup.done",
+        compiled=lambda wildcards: compiled(RUNS[wildcards.run].engine),
     output:
         "<results>/runs/{run}/response.nc",
     log:

@@ -1,8 +1,8 @@
-"""Compile every engine into the cache that all jobs share."""
+"""Compile an engine into the cache that all jobs share."""
 
 from logs import to_log
 
 from fiberweb.engines import warmup
 
 to_log(snakemake)
-warmup()
+warmup(snakemake.wildcards.engine)
