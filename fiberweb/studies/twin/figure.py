@@ -1,0 +1,2 @@
+"""Stub."""
+def draw(*a, **k): pass
