@@ -35,6 +35,7 @@ VALIDATION = "Experimental validation"
 Item = TypeVar("Item")
 Some = Annotated[list[Item], Field(min_length=1)]  # a study without a run has no table to draw
 Size = Annotated[int, Field(ge=2)]
+Angle = Annotated[float, Field(gt=0, lt=90)]  # degrees
 
 
 def key(default, text: str, unit: str = "", paper: str = "", **constraints):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from fiberweb.scoring.limits import check_frames
 from fiberweb.sections import (
     VALIDATION,
+    Angle,
     NotNegative,
     NotNegativeOrRigid,
     Positive,
@@ -20,7 +21,6 @@ from fiberweb.sections import (
 )
 from fiberweb.studies.base import Figure, Lab, Point, Table
 
-Angle = Annotated[float, Field(gt=0, lt=90)]
 OF_ANGLE = "angle"  # the choice of the runs of Fig. 5
 
 

@@ -1,2 +1,153 @@
-"""Stub."""
-def draw(*a, **k): pass
+"""Which observations of the experiment hold, over what the paper does not report of it.
+
+Drawing only: every number comes from the tables.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fiberweb.figures import panels, plots, style
+from fiberweb.studies.twin.tables import ALL
+
+PARAMETERS = {  # label with unit, and what a value is multiplied by
+    "none": ("as\nstated", 1.0),
+    "tension": ("pretension\n(N)", 1.0),
+    "lever": ("lever\n(mm)", 1e3),
+    "direction": ("pull to\nsprings", 1.0),
+    "damping": ("damping\n(1/s)", 1.0),
+    "loss_factor": ("loss\nfactor", 1.0),
+    "bond_stiffness": ("bonds\n(N m)", 1.0),
+    "youngs_modulus": ("$E$\n(GPa)", 1e-9),
+    "marker_noise": ("noise\n(pixels)", 1.0),
+}
+OBSERVED = {  # the paper's words, short
+    "E1": "E1  $C_\\mathrm{nl}$ rises, alike for both",
+    "E2": "E2  $C_\\mathrm{m}$ rises, 6×6 from near zero",
+    "E3": "E3  6×6 recalls 0.5 s with $c$ > 0.8",
+    "E4": "E4  groups keep their performance",
+    "E5": "E5  more memory than simulated",
+}
+VERDICTS = {
+    "holds": {"marker": "o", "color": style.INK, "ms": 5, "ls": ""},
+    "differs": {"marker": "o", "mfc": "white", "mec": style.GREY, "mew": 0.7, "ms": 5, "ls": ""},
+    "not computed": {"marker": ".", "color": style.GREY, "ms": 2, "ls": ""},
+}
+ASIDE = 0.12  # of columns that lie 1 apart, by which sizes are parted
+GAP = 0.6  # between parameters
+
+
+def draw(given: dict, setup: str, path: str | Path) -> Figure:
+    """Draw the panel, as `fiberweb.figures` says.
+
+    Args:
+        given: "twin_sensitivity" (`tables.sensitivity`) and "twin_observations"
+            (`observations.table`).
+    """
+    rows, verdicts = (
+        plots.rows_of(given[name], name, setup) for name in ("twin_sensitivity", "twin_observations")
+    )
+    places = _places(rows)
+    with style.applied():
+        figure = style.figure(style.DOUBLE, 132.0)
+        axes = figure.subplots(3, 1, sharex=True, height_ratios=[40, 40, 34])
+        for ax, letter, name in zip(axes, "ab", plots.TOTALS):
+            _totals(ax, rows, places, name)
+            title = panels.CAPACITIES[name]
+            panels.letter(ax, letter, f"{title} of the twin, one parameter changed at a time", 18.0 if letter == "a" else 3.0)
+        _verdicts(axes[2], verdicts, places)
+        panels.letter(axes[2], "c", f"The paper's observations ({setup} setup)")
+        _labels(axes[0], axes[2], places)
+        panels.key(figure, _handles(rows))
+        style.save(figure, path)
+    return figure
+
+
+def _places(rows: pd.DataFrame) -> dict[tuple[str, str], float]:
+    """Column of each parameter and value, by the value as text."""
+    places, at = {}, 0.0
+    for parameter in PARAMETERS:
+        values = sorted(rows.loc[rows["parameter"] == parameter, "value"].unique())
+        for value in values:
+            places[parameter, _key(value)] = at
+            at += 1.0
+        at += GAP if values else 0.0
+    return places
+
+
+def _key(value: float) -> str:
+    """A value as text; NaN, of nothing changed, too."""
+    return f"{value:g}"
+
+
+def _totals(ax: Axes, rows: pd.DataFrame, places: dict, name: str) -> None:
+    """A capacity of all markers in every column, and what the input alone scores."""
+    colour, fill = plots.colours(rows["n"]), _fills(rows)
+    markers = rows[rows["readouts"] == ALL]
+    for (n, angle), frame in markers.groupby(["n", "angle_deg"]):
+        aside = ASIDE * (list(colour).index(n) - (len(colour) - 1) / 2) * 2
+        at = [places[p, _key(v)] for p, v in zip(frame["parameter"], frame["value"])]
+        frame = frame.assign(at=np.add(at, aside))
+        stable = frame[frame["status"] == "ok"]
+        look = {"mfc": colour[n] if fill[angle] else "white", "mew": 0.8}
+        plots.points(ax, stable, "at", name, color=colour[n], marker="o", ms=3.4, ls="", **look)
+        style.mark_unstable(ax, list(frame.loc[frame["status"] == "unstable", "at"]))
+    alone = rows[rows["readouts"].isin(["u", "powers"]) & (rows["parameter"] == "none")]
+    baselines = alone.groupby("readouts")[["c_nl", "c_m"]].mean().reset_index(names="readout")
+    ax.set(ylim=(0.0, plots.top(markers, baselines, name)), ylabel=plots.TOTALS[name])
+    plots.baselines(ax, baselines, name)
+
+
+def _fills(rows: pd.DataFrame) -> dict[float, bool]:
+    """Which angles have filled marks: the largest."""
+    angles = sorted(rows["angle_deg"].unique())
+    return {angle: angle == angles[-1] for angle in angles}
+
+
+def _verdicts(ax: Axes, verdicts: pd.DataFrame, places: dict) -> None:
+    """A mark for each observation and column."""
+    lines = list(OBSERVED)
+    for one in verdicts.itertuples():
+        at = places[one.parameter, _key(one.value)], lines.index(one.observation)
+        ax.plot(*at, **VERDICTS[one.verdict])
+    ax.set_yticks(range(len(lines)), OBSERVED.values())
+    ax.set(ylim=(len(lines) - 0.5, -0.5))
+    ax.tick_params(length=0)
+    ax.spines[:].set_visible(False)
+
+
+def _labels(top: Axes, bottom: Axes, places: dict) -> None:
+    """Values below the columns, parameters above them."""
+    texts = []
+    for parameter, value in places:
+        factor = PARAMETERS[parameter][1]
+        texts.append("–" if parameter in ("none", "direction") else f"{float(value) * factor:g}")
+    bottom.set_xticks(list(places.values()), texts)
+    for parameter, (label, _) in PARAMETERS.items():
+        at = [place for (name, _), place in places.items() if name == parameter]
+        if at:
+            top.annotate(
+                label, (np.mean(at), 1.0), (0, 2), xycoords=("data", "axes fraction"),
+                textcoords="offset points", ha="center", va="bottom", fontsize=6,
+            )  # fmt: skip
+    for ax in (top, bottom):
+        ax.set_xlim(-0.7, max(places.values()) + 0.7)
+
+
+def _handles(rows: pd.DataFrame) -> dict[str, Line2D]:
+    """What the marks mean."""
+    colour, fill = plots.colours(rows["n"]), _fills(rows)
+    handles = {}
+    for n, shade in colour.items():
+        for angle, filled in fill.items():
+            handles[f"{n}×{n}, {angle:g}°"] = Line2D(
+                [], [], marker="o", ms=3.4, color=shade, mfc=shade if filled else "white", ls=""
+            )
+    handles |= plots.key(rows)
+    return handles | {name: Line2D([], [], **VERDICTS[name]) for name in ("holds", "differs")}
