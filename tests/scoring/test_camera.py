@@ -60,7 +60,6 @@ def test_noise_is_of_run_and_seed(shaken):
     other_seed = moved(film(shaken, **CAMERA | {"seed": 1}))
     other_run = moved(film(shaken.assign_attrs(run="another"), **CAMERA))
     for other in (other_seed, other_run):
-        assert np.abs(np.corrcoef((first - other)[1:].T)).max() <= 1.0 + 1e-9
         assert (first != other)[1:].all()
 
 

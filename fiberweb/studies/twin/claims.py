@@ -54,6 +54,9 @@ def _judged(evidence: Evidence, rule: Callable[[pd.DataFrame], Answer]) -> Answe
     verdict = rule(twin[twin["verdict"]])
     beside = []
     for step, scores in twin[~twin["verdict"]].groupby("frame_step"):
-        beside.append(f"every {step} frames: {rule(scores).text}")
+        try:
+            beside.append(f"every {step} frames: {rule(scores).text}")
+        except NotComputed as reason:
+            beside.append(f"every {step} frames: {reason}")
     text = f"{verdict.text} ({'; '.join(beside)})" if beside else verdict.text
     return Answer(text, verdict.holds)

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from fiberweb.figures import panels, plots, style
-from fiberweb.studies.twin.tables import ALL, READOUTS, REDUCED, TRIVIAL
+from fiberweb.studies.twin.tables import ALL, REDUCED, TRIVIAL
 
 GROUPS = {
     ALL: "all\nmarkers", "lateral_midpoints": "lateral\nmidpoints",
@@ -95,7 +95,7 @@ def _by_target(part: SubFigure, curves: pd.DataFrame) -> None:
         for ax, n in zip(of_target, sizes, strict=True):
             shown = curves[(curves["target"] == target) & (curves["n"] == n)]
             _curves(ax, shown, colour, marker="o" if target == "order" else "")
-            ax.set_title(f"{n}×{n}", loc="right")
+            ax.text(0.97, 0.97, f"{n}×{n}", transform=ax.transAxes, ha="right", va="top")
             ax.set(xlabel="Order" if target == "order" else "Lag (s)", ylim=(-0.12, 1.03))
         if target == "lag":
             of_target[-1].plot(*PAPER_RECALL, **RECALL_MARK)
@@ -142,6 +142,7 @@ def _by_group(part: SubFigure, rows: pd.DataFrame) -> None:
     for ax, letter, name in zip(part.subplots(1, 2), "ef", plots.TOTALS):
         for (n, shade), aside in zip(colour.items(), shift, strict=True):
             _bars(ax, rows[rows["n"] == n].set_index("readouts"), name, shade, aside)
+        _shares(ax, rows, name)
         ax.set_xticks(range(len(GROUPS)), GROUPS.values())
         ax.tick_params(axis="x", length=0, labelsize=6)
         ax.set_ylabel(plots.TOTALS[name])
@@ -153,20 +154,28 @@ def _by_group(part: SubFigure, rows: pd.DataFrame) -> None:
 
 
 def _bars(ax: Axes, scored: pd.DataFrame, name: str, shade: Sequence[float], aside: float) -> None:
-    """Bars of one size, with what each group keeps of all markers above them."""
+    """Bars of one size."""
     if scored.loc[ALL, "status"] == "unstable":
-        style.mark_unstable(ax, [place + aside for place in range(len(READOUTS))])
+        style.mark_unstable(ax, [place + aside for place in range(len(GROUPS))])
         return
     for place, group in enumerate(GROUPS):
         c, error = scored.loc[group, [name, f"{name}_se"]].astype(float)
-        alone = group in TRIVIAL
-        look = {"color": style.FAINT, "edgecolor": style.GREY} if alone else {"color": shade}
+        alone = {"color": style.FAINT, "edgecolor": style.GREY}
         ax.bar(
-            place + aside, c, BAR, linewidth=0.5, **look,
+            place + aside, c, BAR, linewidth=0.5, **(alone if group in TRIVIAL else {"color": shade}),
             yerr=error, error_kw={"elinewidth": 0.7, "ecolor": style.INK},
         )  # fmt: skip
-        if group in REDUCED:
-            ax.annotate(
-                f"{c / scored.loc[ALL, name]:.0%}".replace("%", " %"), (place + aside, 1.0),
-                xycoords=("data", "axes fraction"), ha="center", va="bottom", fontsize=5.5,
-            )  # fmt: skip
+
+
+def _shares(ax: Axes, rows: pd.DataFrame, name: str) -> None:
+    """What each group keeps of all markers, of one size after the other, above its bars."""
+    c = rows.pivot(index="n", columns="readouts", values=name)
+    kept = c.div(c[ALL], axis=0)
+    texts = {ALL: "kept:"} | {
+        group: " · ".join(f"{100 * share:.0f}" for share in kept[group]) + " %" for group in REDUCED
+    }
+    for group, text in texts.items():
+        ax.annotate(
+            text, ([*GROUPS].index(group), 1.0), xycoords=("data", "axes fraction"), ha="center",
+            va="bottom", fontsize=6,
+        )  # fmt: skip

@@ -156,6 +156,8 @@ def over_angle(scores: pd.DataFrame, n: int, column: str, readouts: str = ALL) -
 def shares(scores: pd.DataFrame, n: int, column: str) -> pd.Series:
     """What each group keeps of a capacity of all markers at the largest angle."""
     of_all = over_angle(scores, n, column).iloc[-1]
+    if of_all <= 0.0:
+        raise NotComputed(f"{n}x{n} has no capacity to keep")
     return pd.Series(
         {g: over_angle(scores, n, column, g).iloc[-1] / of_all for g in groups.REDUCED}
     )

@@ -41,6 +41,7 @@ VERDICTS = {
 }
 ASIDE = 0.12  # of columns that lie 1 apart, by which sizes are parted
 GAP = 0.6  # between parameters
+NAMES = 23.0  # points above panel a for the names of the parameters
 
 
 def draw(given: dict, setup: str, path: str | Path) -> Figure:
@@ -57,10 +58,10 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     with style.applied():
         figure = style.figure(style.DOUBLE, 132.0)
         axes = figure.subplots(3, 1, sharex=True, height_ratios=[40, 40, 34])
-        for ax, letter, name in zip(axes, "ab", plots.TOTALS):
+        for ax, letter, name, pad in zip(axes, "ab", plots.TOTALS, (NAMES, 3.0), strict=False):
             _totals(ax, rows, places, name)
-            title = panels.CAPACITIES[name]
-            panels.letter(ax, letter, f"{title} of the twin, one parameter changed at a time", 18.0 if letter == "a" else 3.0)
+            title = f"{panels.CAPACITIES[name]} of the twin, one parameter changed at a time"
+            panels.letter(ax, letter, title, pad)
         _verdicts(axes[2], verdicts, places)
         panels.letter(axes[2], "c", f"The paper's observations ({setup} setup)")
         _labels(axes[0], axes[2], places)
