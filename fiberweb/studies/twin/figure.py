@@ -171,8 +171,8 @@ def _shares(ax: Axes, rows: pd.DataFrame, name: str) -> None:
     """What each group keeps of all markers, of one size after the other, above its bars."""
     c = rows.pivot(index="n", columns="readouts", values=name)
     kept = c.div(c[ALL], axis=0)
-    texts = {ALL: "kept:"} | {
-        group: " · ".join(f"{100 * share:.0f}" for share in kept[group]) + " %" for group in REDUCED
+    texts = {ALL: "kept (%):"} | {
+        group: ", ".join(f"{100 * share:.0f}" for share in kept[group]) for group in REDUCED
     }
     for group, text in texts.items():
         ax.annotate(
