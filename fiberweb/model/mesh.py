@@ -12,7 +12,6 @@ from fiberweb.arguments import whole
 from fiberweb.model import authors_mesh, drive
 from fiberweb.model.authors import ELEMENT
 from fiberweb.model.lines import Line, cut, nodes_about
-from fiberweb.model.network import Network
 from fiberweb.model.readouts import places
 from fiberweb.model.scene import Scene
 

@@ -277,9 +277,7 @@ def _sums(fit: Fit, overshoot: float | None, block: int) -> tuple[np.ndarray, ..
     return test, train.sum(axis=1), raw.sum(axis=1)
 
 
-def _replace_overshoot(
-    fit: Fit, part: np.ndarray, most: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _replace_overshoot(fit: Fit, part: np.ndarray, most: float) -> tuple[np.ndarray, np.ndarray]:
     """Target and estimate, both the part's target mean wherever the estimate exceeds the most."""
     outside = np.abs(fit.estimate) > most
     mean = mean_of(fit.target, part)

@@ -101,7 +101,8 @@ class Lab:
         given = self.experiment.model_copy(update=changes)
         same = (
             "duration", "sample_rate", "drive_rate", "lever", "tension", "diameter",
-            "youngs_modulus", "density", "loss_factor", "bond_stiffness", "damping", "end_stiffness",
+            "youngs_modulus", "density", "loss_factor", "bond_stiffness", "damping",
+            "end_stiffness",
         )  # fmt: skip
         scene = Scene(
             crosshatch(n, length=given.length),

@@ -32,7 +32,9 @@ def response(scene, name, status="ok", quiet=0.0):
     basis[0] = 0.0
     moved = 5e-3 * basis @ random.normal(size=(5, 2 * len(points)))
     moved = moved.reshape(len(u), 2, -1).transpose(0, 2, 1)
-    at = np.hypot(points["x"] - scene.network.driven_point[0], points["y"] - scene.network.driven_point[1])
+    at = np.hypot(
+        points["x"] - scene.network.driven_point[0], points["y"] - scene.network.driven_point[1]
+    )
     moved[:, at.argmin()] = np.column_stack([quiet * u, scene.stroke * u])
     if status == "unstable":
         moved[len(u) // 2 :] = np.nan

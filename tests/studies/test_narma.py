@@ -52,7 +52,10 @@ def study(tmp_path_factory):
     """(estimates, table) of a stable and an unstable network, and of the twin in two readings."""
     folder = tmp_path_factory.mktemp("narma")
     twin = asked_for("narma", "published")[0]
-    runs = [recording(2, name="crosshatch-n02"), recording(3, status="unstable", name="crosshatch-n03")]
+    runs = [
+        recording(2, name="crosshatch-n02"),
+        recording(3, status="unstable", name="crosshatch-n03"),
+    ]
     runs.append(filmed(twin.scene, "twin"))
     paths = [folder / f"{number}.nc" for number in range(3)]
     for run, path in zip(runs, paths, strict=True):

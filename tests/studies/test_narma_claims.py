@@ -17,7 +17,7 @@ MAIN = "body == 'twin' and verdict and readout == 'network' and timing == 'same'
 
 
 def narma_table(setup="described"):
-    """The twin in two readings beside a network, with twice the error where it should not be read."""
+    """The twin in two readings beside a network; twice the error where it should not be read."""
     records = []
     cases = (("twin", 1, True), ("twin", 2, False), ("network", 1, False))
     for (body, step, verdict), order, readout, timing in itertools.product(

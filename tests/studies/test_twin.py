@@ -29,7 +29,9 @@ TWIN = {
 # --- points -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("angle", "stroke"), [(25.0, 29.58e-3), (40.0, 45.00e-3), (50.0, 53.62e-3)])
+@pytest.mark.parametrize(
+    ("angle", "stroke"), [(25.0, 29.58e-3), (40.0, 45.00e-3), (50.0, 53.62e-3)]
+)
 def test_strokes_are_sines_of_the_angles(angle, stroke):
     """70 mm sin(angle), away from the springs of vertical fibres."""
     scenes = {round(p.scene.motor_angle, 9): p.scene for p in asked_for("twin")[:12]}
@@ -189,7 +191,9 @@ def test_the_panel_has_every_value_and_an_unstable_one_without_numbers(study):
     verdicts = study[0]["described"]["twin_observations"]
     assert len(verdicts) == 4 * 5
     of_lost = verdicts[verdicts["parameter"] == "tension"].set_index("observation")
-    assert of_lost.loc["E1", "verdict"] == "not computed" and "unstable" in of_lost.loc["E1", "text"]
+    assert (
+        of_lost.loc["E1", "verdict"] == "not computed" and "unstable" in of_lost.loc["E1", "text"]
+    )
     assert of_lost.loc["E3", "verdict"] in ("holds", "differs")  # of the 6x6 alone
 
 

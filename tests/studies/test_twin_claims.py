@@ -53,19 +53,32 @@ def test_what_agrees_holds():
 
 
 MAIN = "verdict and readouts == 'all'"
-WRONG = {  # id, rows, what is changed, and what the text says
-    "one size does not rise": ("E1", f"{MAIN} and n == 6 and angle_deg == 50", {"c_nl": 0.40}, "6x6 does not rise"),
-    "sizes are not alike": ("E1", f"{MAIN} and n == 6", {"c_nl": [c + 0.05 for c in C_NL.values()]}, "6x6 is +0.05 from 4x4"),
-    "begins high": ("E2", f"{MAIN} and n == 6 and angle_deg == 25", {"c_m": 0.2}, "6x6 begins at 0.20"),
-    "rises little": ("E2", f"{MAIN} and n == 6 and angle_deg >= 40", {"c_m": 0.28}, "6x6 changes by +0.23 up to 40"),
-    "no plateau": ("E2", f"{MAIN} and n == 4 and angle_deg == 50", {"c_m": 0.70}, "4x4 has no plateau"),
-    "4x4 ends higher": ("E2", f"{MAIN} and n == 6 and angle_deg >= 40", {"c_m": 0.62}, "6x6 ends -0.01 from 4x4"),
+GROUP = "verdict and readouts == '{}' and n == {}"
+HIGHER = [c + 0.05 for c in C_NL.values()]
+WRONG = {  # id, size and angles or group, what is changed, and what the text says
+    "one size does not rise": (
+        "E1", f"{MAIN} and n == 6 and angle_deg == 50", {"c_nl": 0.40}, "6x6 does not rise"),
+    "sizes are not alike": (
+        "E1", f"{MAIN} and n == 6", {"c_nl": HIGHER}, "6x6 is +0.05 from 4x4"),
+    "begins high": (
+        "E2", f"{MAIN} and n == 6 and angle_deg == 25", {"c_m": 0.2}, "6x6 begins at 0.20"),
+    "rises little": (
+        "E2", f"{MAIN} and n == 6 and angle_deg >= 40", {"c_m": 0.28}, "changes by +0.23 up to 40"),
+    "no plateau": (
+        "E2", f"{MAIN} and n == 4 and angle_deg == 50", {"c_m": 0.70}, "4x4 has no plateau"),
+    "4x4 ends higher": (
+        "E2", f"{MAIN} and n == 6 and angle_deg >= 40", {"c_m": 0.62}, "6x6 ends -0.01 from 4x4"),
     "4x4 is flat": ("E2", f"{MAIN} and n == 4", {"c_m": 0.6}, "4x4 changes by +0.00"),
-    "forgets": ("E3", f"{MAIN} and n == 6 and angle_deg == 50", {"recall_500ms": 0.79}, "below 0.8"),
-    "springs lose": ("E4", "verdict and readouts == 'near_springs' and n == 4", {"c_m": 0.3}, "4x4 loses in a strong group"),
-    "actuation is strong": ("E4", "verdict and readouts == 'near_actuation' and n == 6", {"c_nl": 0.65}, "6x6 near actuation is not weaker"),
-    "C_nl is kept better": ("E4", "verdict and readouts == 'near_actuation' and n == 6", {"c_m": 0.3}, "6x6 keeps C_nl better"),
-    "no more than simulated": ("E5", f"{MAIN} and n == 6 and angle_deg == 40", {"c_m": 0.57}, "not above"),
+    "forgets": (
+        "E3", f"{MAIN} and n == 6 and angle_deg == 50", {"recall_500ms": 0.79}, "below 0.8"),
+    "springs lose": (
+        "E4", GROUP.format("near_springs", 4), {"c_m": 0.3}, "4x4 loses in a strong group"),
+    "actuation is strong": (
+        "E4", GROUP.format("near_actuation", 6), {"c_nl": 0.65}, "near actuation is not weaker"),
+    "C_nl is kept better": (
+        "E4", GROUP.format("near_actuation", 6), {"c_m": 0.3}, "6x6 keeps C_nl better"),
+    "no more than simulated": (
+        "E5", f"{MAIN} and n == 6 and angle_deg == 40", {"c_m": 0.57}, "not above"),
 }  # fmt: skip
 
 
@@ -101,10 +114,15 @@ def test_the_experiment_is_judged_in_two_setups():
 
 def test_a_panel_judges_few_angles():
     scores = twin_table(angles=(25.0, 50.0)).query("verdict")
+    short = changed(scores, "n == 6", recall_500ms=0.1)
     table = observations.table(
-        pd.concat([scores.assign(parameter="none", value=np.nan),
-                   changed(scores, "n == 6", recall_500ms=0.1).assign(parameter="lever", value=1.0)])
-    )  # fmt: skip
+        pd.concat(
+            [
+                scores.assign(parameter="none", value=np.nan),
+                short.assign(parameter="lever", value=1.0),
+            ]
+        )
+    )
     found = table.pivot(index="observation", columns="parameter", values="verdict")
     assert list(found["none"]) == ["holds"] * 5
     assert dict(found["lever"]) == dict.fromkeys(found.index, "holds") | {"E3": "differs"}

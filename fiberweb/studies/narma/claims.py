@@ -21,7 +21,10 @@ def root_mean_square_error(evidence: Evidence) -> Answer:
     order = OF_CLAIM[evidence.claim["id"]]
     table = _twin(evidence)
     ours = _value(table, "rmse", order)
-    remarks = [f"input alone {_best_input(table, order):{DIGITS}}", *_beside(table, "rmse", [order])]
+    remarks = [
+        f"input alone {_best_input(table, order):{DIGITS}}",
+        *_beside(table, "rmse", [order]),
+    ]
     row = _row(table, order)
     remarks.append(f"the target's mean {row['rmse'] / row['nrmse']:{DIGITS}}")
     return Answer(f"{ours:{DIGITS}} ({'; '.join(remarks)})", within_tolerance(evidence.claim, ours))
@@ -88,6 +91,7 @@ def _beside(table: pd.DataFrame, column: str, orders) -> list[str]:
         f"every {step} frames": {"step": step} for step in steps
     }
     return [
-        f"{name} " + ", ".join(f"{_value(table, column, order, **which):{DIGITS}}" for order in orders)
+        f"{name} "
+        + ", ".join(f"{_value(table, column, order, **which):{DIGITS}}" for order in orders)
         for name, which in others.items()
     ]

@@ -192,7 +192,9 @@ def _bars(ax: Axes, table: pd.DataFrame, readouts: list[Readout], measure: str) 
         ends = [min(places) - 0.5, max(places) + 0.5]
         if body == "twin" and measure in published:
             ax.plot(ends, [MILLI * published[measure]] * 2, **EXPERIMENT)
-        known = cases[(cases["timing"] == SHOWN) & cases["rmse"].notna() & (cases["frame_step"] == 1)]
+        known = cases[
+            (cases["timing"] == SHOWN) & cases["rmse"].notna() & (cases["frame_step"] == 1)
+        ]
         if measure == "rmse" and len(known):
             spread = known.iloc[0]["rmse"] / known.iloc[0]["nrmse"]
             ax.plot(ends, [MILLI * spread] * 2, **MEAN)

@@ -36,7 +36,7 @@ class SensitivitySection(Section):
     bond_stiffness: list[NotNegativeOrRigid] = key(
         [0.0], "of crossings against turning: none", "N m"
     )
-    youngs_modulus: list[Positive] = key([2.0e9, 3.0e9], "of nylon", "Pa")
+    youngs_modulus: list[Positive] = key([2.0e9], "of nylon", "Pa")
     marker_noise: list[NotNegative] = key([0.0, 0.03, 0.3, 1.0], "noise of the camera", "px")
 
 

@@ -111,7 +111,9 @@ def _by_target(part: SubFigure, curves: pd.DataFrame) -> None:
             "the paper's 6×6 at large angles: $c$ above": Line2D([], [], **RECALL_MARK),
         },
     )
-    plots.colour_bar(part, axes, colour, "Motor angle (degrees)", pad=0.01, fraction=0.02, aspect=22)
+    plots.colour_bar(
+        part, axes, colour, "Motor angle (degrees)", pad=0.01, fraction=0.02, aspect=22
+    )
 
 
 def _curves(ax: Axes, shown: pd.DataFrame, colour: dict, marker: str) -> None:
@@ -161,9 +163,10 @@ def _bars(ax: Axes, scored: pd.DataFrame, name: str, shade: Sequence[float], asi
     for place, group in enumerate(GROUPS):
         c, error = scored.loc[group, [name, f"{name}_se"]].astype(float)
         alone = {"color": style.FAINT, "edgecolor": style.GREY}
+        look = alone if group in TRIVIAL else {"color": shade}
         ax.bar(
-            place + aside, c, BAR, linewidth=0.5, **(alone if group in TRIVIAL else {"color": shade}),
-            yerr=error, error_kw={"elinewidth": 0.7, "ecolor": style.INK},
+            place + aside, c, BAR, linewidth=0.5, yerr=error,
+            error_kw={"elinewidth": 0.7, "ecolor": style.INK}, **look,
         )  # fmt: skip
 
 

@@ -58,7 +58,11 @@ def memory_rises(scores: pd.DataFrame) -> Answer:
         failed.append(f"6x6 begins at {large.iloc[0]:.2f}")
     if not (rises([*early]) and early.iloc[-1] - early.iloc[0] > SUBSTANTIAL):
         failed.append(f"6x6 changes by {early.iloc[-1] - early.iloc[0]:+.2f} up to 40 degrees")
-    failed += [f"{n}x{n} has no plateau" for n, c in late.items() if (c - c.iloc[0]).abs().max() > ALLOWANCE]
+    failed += [
+        f"{n}x{n} has no plateau"
+        for n, c in late.items()
+        if (c - c.iloc[0]).abs().max() > ALLOWANCE
+    ]
     if not large.iloc[-1] > small.iloc[-1] + ALLOWANCE:
         failed.append(f"6x6 ends {large.iloc[-1] - small.iloc[-1]:+.2f} from 4x4")
     return _answer(f"4x4 {numbers(small)}, 6x6 {numbers(large)}{_input(scores, 'c_m')}", failed)
@@ -67,7 +71,9 @@ def memory_rises(scores: pd.DataFrame) -> Answer:
 def recalls_half_a_second(scores: pd.DataFrame) -> Answer:
     """c of u 0.5 s ago of the 6x6 is above 0.8 at the largest angle."""
     c = over_angle(scores, LARGE, "recall_500ms").iloc[-1]
-    return _answer(f"{c:.2f}{_input(scores, 'recall_500ms')}", [] if c > RECALLED else ["below 0.8"])
+    return _answer(
+        f"{c:.2f}{_input(scores, 'recall_500ms')}", [] if c > RECALLED else ["below 0.8"]
+    )
 
 
 def groups_keep(scores: pd.DataFrame) -> Answer:

@@ -52,7 +52,8 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
             (`observations.table`).
     """
     rows, verdicts = (
-        plots.rows_of(given[name], name, setup) for name in ("twin_sensitivity", "twin_observations")
+        plots.rows_of(given[name], name, setup)
+        for name in ("twin_sensitivity", "twin_observations")
     )
     places = _places(rows)
     with style.applied():
