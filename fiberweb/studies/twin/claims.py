@@ -48,14 +48,14 @@ def memory_exceeds_that_of_simulations(evidence: Evidence) -> Answer:
     return _judged(evidence, lambda scores: observations.exceeds_simulations(scores, best))
 
 
-def _judged(evidence: Evidence, rule: Callable[[pd.DataFrame], Answer]) -> Answer:
+def _judged(evidence: Evidence, rule: Callable[[pd.DataFrame], observations.Observed]) -> Answer:
     """The verdict's answer, with the text of the other readings behind it."""
     twin = evidence.table("twin")
-    verdict = rule(twin[twin["verdict"]])
+    verdict = rule(twin[twin["verdict"]]).answer
     beside = []
     for step, scores in twin[~twin["verdict"]].groupby("frame_step"):
         try:
-            beside.append(f"every {step} frames: {rule(scores).text}")
+            beside.append(f"every {step} frames: {rule(scores).answer.text}")
         except NotComputed as reason:
             beside.append(f"every {step} frames: {reason}")
     text = f"{verdict.text} ({'; '.join(beside)})" if beside else verdict.text

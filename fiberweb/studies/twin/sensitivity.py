@@ -27,17 +27,24 @@ PARAMETERS = {  # label with unit, and what a value is multiplied by
     "youngs_modulus": ("$E$\n(GPa)", 1e-9),
     "marker_noise": ("noise\n(pixels)", 1.0),
 }
-OBSERVED = {  # the paper's words, short
-    "E1": "E1  $C_\\mathrm{nl}$ rises, alike for both",
-    "E2": "E2  $C_\\mathrm{m}$ rises, 6×6 from near zero",
-    "E3": "E3  6×6 recalls 0.5 s with $c$ > 0.8",
-    "E4": "E4  groups keep their performance",
-    "E5": "E5  more memory than simulated",
+C_NL, C_M = plots.TOTALS["c_nl"], plots.TOTALS["c_m"]
+OBSERVED = {  # by observation and part
+    ("E1", "rises with the angle"): f"{C_NL} rises with the angle",
+    ("E1", "alike for both"): f"{C_NL} alike for both",
+    ("E2", "4x4 rises modestly"): f"4×4: {C_M} rises modestly",
+    ("E2", "6x6 begins near zero"): f"6×6: {C_M} near zero at first",
+    ("E2", "6x6 rises sharply"): f"6×6: {C_M} rises sharply",
+    ("E2", "6x6 ends above 4x4"): f"6×6: {C_M} ends above 4×4",
+    ("E3", "6x6 recalls 0.5 s"): "6×6: $c$ > 0.8 for 0.5 s ago",
+    ("E4", "strong groups keep"): "strong groups keep",
+    ("E4", "near actuation is weaker"): "near actuation weaker",
+    ("E4", "memory is kept better"): "memory kept better",
+    ("E5", "more memory than simulated"): "more memory than simulated",
 }
 VERDICTS = {
     "holds": {"marker": "o", "color": style.INK, "ms": 5, "ls": ""},
     "differs": {"marker": "o", "mfc": "white", "mec": style.GREY, "mew": 0.7, "ms": 5, "ls": ""},
-    "not computed": {"marker": ".", "color": style.GREY, "ms": 2, "ls": ""},
+    "not computed": {"marker": "_", "color": style.GREY, "ms": 4, "mew": 0.6, "ls": ""},
 }
 ASIDE = 0.12  # of columns that lie 1 apart, by which sizes are parted
 GAP = 0.6  # between parameters
@@ -57,8 +64,8 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     )
     places = _places(rows)
     with style.applied():
-        figure = style.figure(style.DOUBLE, 132.0)
-        axes = figure.subplots(3, 1, sharex=True, height_ratios=[40, 40, 34])
+        figure = style.figure(style.DOUBLE, 158.0)
+        axes = figure.subplots(3, 1, sharex=True, height_ratios=[40, 40, 58])
         for ax, letter, name, pad in zip(axes, "ab", plots.TOTALS, (NAMES, 3.0), strict=False):
             _totals(ax, rows, places, name)
             title = f"{panels.CAPACITIES[name]} of the twin, one parameter changed at a time"
@@ -102,7 +109,8 @@ def _totals(ax: Axes, rows: pd.DataFrame, places: dict, name: str) -> None:
         style.mark_unstable(ax, list(frame.loc[frame["status"] == "unstable", "at"]))
     alone = rows[rows["readouts"].isin(["u", "powers"]) & (rows["parameter"] == "none")]
     baselines = alone.groupby("readouts")[["c_nl", "c_m"]].mean().reset_index(names="readout")
-    ax.set(ylim=(0.0, plots.top(markers, baselines, name)), ylabel=plots.TOTALS[name])
+    highest = plots.top(markers, baselines, name) + 0.03  # a mark at the end is whole
+    ax.set(ylim=(0.0, highest), ylabel=plots.TOTALS[name])
     plots.baselines(ax, baselines, name)
 
 
@@ -113,12 +121,20 @@ def _fills(rows: pd.DataFrame) -> dict[float, bool]:
 
 
 def _verdicts(ax: Axes, verdicts: pd.DataFrame, places: dict) -> None:
-    """A mark for each observation and column."""
+    """A mark for each part of an observation and column; of what is unknown as a whole, for all."""
     lines = list(OBSERVED)
-    for one in verdicts.itertuples():
-        at = places[one.parameter, _key(one.value)], lines.index(one.observation)
-        ax.plot(*at, **VERDICTS[one.verdict])
-    ax.set_yticks(range(len(lines)), OBSERVED.values())
+    for one in verdicts.fillna({"part": ""}).itertuples():
+        at = places[one.parameter, _key(one.value)]
+        for line, (observation, part) in enumerate(lines):
+            if observation == one.observation and one.part in ("", part):
+                ax.plot(at, line, **VERDICTS[one.verdict])
+    labels = []
+    for number, ((observation, _), text) in enumerate(OBSERVED.items()):
+        first = number == 0 or lines[number - 1][0] != observation
+        labels.append(f"{text}   $\\mathbf{{{observation}}}$" if first else f"{text}        ")
+        if first and number:
+            ax.axhline(number - 0.5, color=style.FAINT, lw=0.5)
+    ax.set_yticks(range(len(lines)), labels)
     ax.set(ylim=(len(lines) - 0.5, -0.5))
     ax.tick_params(length=0)
     ax.spines[:].set_visible(False)
@@ -152,4 +168,4 @@ def _handles(rows: pd.DataFrame) -> dict[str, Line2D]:
                 [], [], marker="o", ms=3.4, color=shade, mfc=shade if filled else "white", ls=""
             )
     handles |= plots.key(rows)
-    return handles | {name: Line2D([], [], **VERDICTS[name]) for name in ("holds", "differs")}
+    return handles | {name: Line2D([], [], **VERDICTS[name]) for name in VERDICTS}
