@@ -42,7 +42,7 @@ def test_what_agrees_holds_with_the_rest_beside_it():
     found = verdicts(narma_table())
     assert list(found["verdict"]) == ["holds"] * 5
     assert found.loc["N2", "value"] == (
-        "0.01000 (input alone 0.02000; next sample 0.02000; every 2 frames 0.02000; "
+        "0.01000 (input alone 0.02000; next sample 0.02000; one frame in 2 0.02000; "
         "the target's mean 0.02000)"
     )
     assert found.loc["N4", "value"].startswith("0.00250, 0.02400, 0.04100 (next sample 0.00500, ")

@@ -205,7 +205,7 @@ def test_the_figure_is_legible_and_says_what_it_shows(study, tmp_path):
     assert_written(tmp_path / "twin.png")
     assert_legible(picture)
     words = said(picture)
-    for word in ("4×4", "6×6", "the authors' scoring", "every 2 frames taken", "degrees"):
+    for word in ("4×4", "6×6", "the authors' scoring", "one frame in 2, taken", "degrees"):
         assert word in words, word
     with pytest.raises(ValueError, match="no run of the described setup"):
         figure.draw(study[0]["published"], "described", tmp_path / "none.png")

@@ -47,8 +47,8 @@ def test_what_agrees_holds():
     found = verdicts(twin_table())
     assert list(found["verdict"]) == ["holds"] * 5
     assert found.loc["E1", "value"].startswith("4x4 0.40 0.48 0.55 0.60 0.64 0.66, 6x6 0.40")
-    assert "every 2 frames: 4x4 0.20" in found.loc["E1", "value"]
-    assert found.loc["E3", "value"].startswith("0.90 (u alone 0.36) (every 2 frames: 0.45")
+    assert "one frame in 2: 4x4 0.20" in found.loc["E1", "value"]
+    assert found.loc["E3", "value"].startswith("0.90 (u alone 0.36) (one frame in 2: 0.45")
     assert "simulated up to 0.55" in found.loc["E5", "value"]
 
 

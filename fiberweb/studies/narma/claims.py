@@ -88,7 +88,7 @@ def _beside(table: pd.DataFrame, column: str, orders) -> list[str]:
     """The column by the other timing, and by the other readings of the frame rate."""
     steps = sorted(table.loc[~table["verdict"], "frame_step"].unique())
     others = {"next sample": {"timing": "next"}} | {
-        f"every {step} frames": {"step": step} for step in steps
+        f"one frame in {step}": {"step": step} for step in steps
     }
     return [
         f"{name} "

@@ -233,7 +233,7 @@ def _handles(table: pd.DataFrame) -> dict[str, Artist]:
     handles = {
         "estimate of the same sample": Patch(fc=style.FAINT, ec=style.GREY),
         "of the next one": Line2D([], [], **NEXT),
-        "twin, every second frame": Line2D([], [], **HALF),
+        "twin, fewer frames read": Line2D([], [], **HALF),
         "paper's experiment": Line2D([], [], **EXPERIMENT),
         r"$\sigma_y$, the mean's error": Line2D([], [], **MEAN),
         "target $y$": Line2D([], [], **panels.TARGET),

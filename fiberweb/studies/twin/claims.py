@@ -55,8 +55,8 @@ def _judged(evidence: Evidence, rule: Callable[[pd.DataFrame], observations.Obse
     beside = []
     for step, scores in twin[~twin["verdict"]].groupby("frame_step"):
         try:
-            beside.append(f"every {step} frames: {rule(scores).answer.text}")
+            beside.append(f"one frame in {step}: {rule(scores).answer.text}")
         except NotComputed as reason:
-            beside.append(f"every {step} frames: {reason}")
+            beside.append(f"one frame in {step}: {reason}")
     text = f"{verdict.text} ({'; '.join(beside)})" if beside else verdict.text
     return Answer(text, verdict.holds)

@@ -79,7 +79,7 @@ def _handles(markers: pd.DataFrame, colour: dict) -> dict[str, Artist]:
     }
     for step in sorted(markers.loc[~markers["verdict"], "frame_step"].unique()):
         look = {"color": style.INK, "marker": "o", "ms": 3.0} | OTHER
-        handles[f"every {step} frames taken for consecutive"] = Line2D([], [], **look)
+        handles[f"one frame in {step}, taken for consecutive"] = Line2D([], [], **look)
     return handles | plots.key(markers)
 
 
