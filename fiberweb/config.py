@@ -24,6 +24,7 @@ from fiberweb.folders import folder, missing_disk
 from fiberweb.layers import is_number, overlay, read
 from fiberweb.recorded import RecordingSection
 from fiberweb.sections import (
+    ExperimentSection,
     NumericsSection,
     SceneSection,
     ScoringSection,
@@ -56,6 +57,7 @@ class General(Section):
     setups: SetupsSection = SetupsSection()
     numerics: NumericsSection = NumericsSection()
     scoring: ScoringSection = ScoringSection()
+    experiment: ExperimentSection = ExperimentSection()
     recordings: list[RecordingSection] = key(
         [], "files or folders of recordings: the target recordings"
     )
@@ -96,7 +98,8 @@ def lab(config: Config, setup: str, best: Mapping | None = None) -> Lab:
     overrides = getattr(config.setups, setup).model_dump()
     defaults = config.scene.model_dump() | overrides
     ridge = config.ridge
-    empty = Lab(setup, defaults, ForceMap(ridge.n, tuple(ridge.spacing), {}), True)
+    no_map = ForceMap(ridge.n, tuple(ridge.spacing), {})
+    empty = Lab(setup, defaults, no_map, True, config.experiment)
     forces = {}
     for choice, spacing in product(CHOICES, ridge.spacing):
         if best is None:

@@ -34,7 +34,7 @@ class Run:
         scene: the physics.
         numerics: keyword arguments of `fiberweb.simulate` beside the scene.
         scoring: keyword arguments of `fiberweb.score` beside the response.
-        choice: where the study took the force from; see `fiberweb.studies.base.Point`.
+        choice, camera: see `fiberweb.studies.base.Point`.
         name: what it is, and a hash of what tells scene and numerics from others.
     """
 
@@ -42,6 +42,7 @@ class Run:
     numerics: dict = field(hash=False)
     scoring: dict = field(hash=False)
     choice: str = ""
+    camera: dict | None = field(default=None, hash=False)
 
     @cached_property
     def request(self) -> str:
@@ -148,7 +149,7 @@ def runs(config: Config, study: str, setup: str, best: Mapping | None = None) ->
         if published and point.scene.network.topology == "polygon":
             scoring["skip"] = SKIPPED_FRAMES
         numerics = general if point.numerics is None else point.numerics
-        run = Run(point.scene, numerics, scoring, point.choice)
+        run = Run(point.scene, numerics, scoring | point.scoring, point.choice, point.camera)
         same_scene(table.setdefault((run.name, run.choice), run), run)
     return list(table.values())
 

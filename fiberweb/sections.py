@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fiberweb.arguments import plain
 from fiberweb.engines import ENGINES
-from fiberweb.model.scene import SETUPS, NotNegative, Positive, PositiveOrPinned, Scene, Seed
+from fiberweb.model.scene import (
+    SETUPS,
+    NotNegative,
+    NotNegativeOrRigid,
+    Positive,
+    PositiveOrPinned,
+    Scene,
+    Seed,
+)
 from fiberweb.scoring.limits import ALPHA
 from fiberweb.simulation.plan import ACCURACIES
 
@@ -20,10 +29,13 @@ TOPOLOGY = "Fiber network topology"
 SCALING = "Scaling behavior of crosshatch networks"
 PRETENSION = "Pretension"
 FEATURES = "Feature selection"
+EXPERIMENTS = "Physical experiments"
+VALIDATION = "Experimental validation"
 
 Item = TypeVar("Item")
 Some = Annotated[list[Item], Field(min_length=1)]  # a study without a run has no table to draw
 Size = Annotated[int, Field(ge=2)]
+Angle = Annotated[float, Field(gt=0, lt=90)]  # degrees
 
 
 def key(default, text: str, unit: str = "", paper: str = "", **constraints):
@@ -142,3 +154,47 @@ class ScoringSection(Section):
     """How capacities are computed."""
 
     alpha: Positive = key(ALPHA, "ridge penalty", "", SIMULATION)
+
+
+class ExperimentSection(Section):
+    """The paper's experiment as a scene, a camera and a scoring. What the paper does not report has
+    a dash in the last column, and its reason in the text."""
+
+    length: Positive = key(0.52, "fibre length", "m", EXPERIMENTS)
+    diameter: Positive = key(0.45e-3, "diameter of the fibres", "m", EXPERIMENTS)
+    end_stiffness: Positive = key(52.5, "springs at the far ends", "N/m", EXPERIMENTS)
+    drive_rate: Positive = key(2.0, "random knots of the motor angle per second", "Hz", EXPERIMENTS)
+    duration: Positive = key(150.0, "length of the recording", "s", EXPERIMENTS)
+    sample_rate: Positive = key(
+        120.0, "frames per second: the text's, which the scripts divide by too", "Hz", EXPERIMENTS
+    )
+    youngs_modulus: Positive = key(2.5e9, "nylon monofilament has 2 to 3 GPa", "Pa")
+    density: Positive = key(1140.0, "nylon 6", "kg/m^3")
+    tension: NotNegative = key(1.0, "pretension: a spring stretched by some 20 mm", "N")
+    bond_stiffness: NotNegativeOrRigid = key(
+        math.inf, "of crossings against turning: beads of glue far stiffer than the fibre", "N m"
+    )
+    damping: NotNegative = key(
+        5.0, "rate at which velocity decays: about 1 /s of air, the rest of markers and glue", "1/s"
+    )
+    loss_factor: NotNegative = key(0.05, "tan(delta) at 10 Hz: nylon has 0.02 to 0.1")
+    lever: Positive = key(0.07, "arm of the motor, by the authors' scripts", "m")
+    direction: Literal[-1, 1] = key(
+        -1, "of the pull: away from the springs of vertical fibres, as the scripts' forces point, "
+        "or 1, towards them",
+    )  # fmt: skip
+    accuracy: Literal[tuple(ACCURACIES)] = key(
+        "draft", "of these runs: tension and not bending decides how the fibres move"
+    )
+    pixels_per_mm: Positive = key(2.0, "scale of the film: the scripts' crop has 0.5 mm a pixel")
+    marker_noise: NotNegative = key(
+        0.1, "standard deviation of a marker's position in x and in y: centroids of blobs are good "
+        "to a fraction of a pixel", "px",
+    )  # fmt: skip
+    camera_seed: Seed = key(0, "seed of that noise, beside the name of the run")
+    frame_step: Some[Annotated[int, Field(ge=1)]] = key(
+        [1, 2], "every so many frames are read, and then taken for consecutive; claims are judged "
+        "by the first, the text's, and one of the scripts reads every second",
+    )  # fmt: skip
+    alpha: Positive = key(1.0, "ridge penalty", "", EXPERIMENTS)
+    skip: Annotated[int, Field(ge=0)] = key(500, "first frames dropped, by the scripts")

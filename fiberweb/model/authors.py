@@ -33,6 +33,9 @@ def clock(duration: float) -> float:
 
 
 SKIPPED_FRAMES = 300  # scoring script of the polygons, which drops these first ones
+# scoring scripts of the experiment: estimates of Legendre and of recall targets beyond these are
+# replaced, where those of the simulations replace what leaves [-1, 1]
+OVERSHOOT = (2.0, 1.5)
 SHUFFLE_SEED = 42  # feature selection script: random_state of sklearn's train_test_split
 
 # Simulation scripts of crosshatch and polygon: what a scene leaves open. The damper's 10 /s act on

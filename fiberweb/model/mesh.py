@@ -12,7 +12,6 @@ from fiberweb.arguments import whole
 from fiberweb.model import authors_mesh, drive
 from fiberweb.model.authors import ELEMENT
 from fiberweb.model.lines import Line, cut, nodes_about
-from fiberweb.model.network import Network
 from fiberweb.model.readouts import places
 from fiberweb.model.scene import Scene
 
@@ -226,12 +225,6 @@ def _springs(scene: Scene, lines: list[Line], first: np.ndarray, pull: np.ndarra
     return far, np.sqrt(scene.end_stiffness) * along
 
 
-def _lateral(network: Network) -> np.ndarray:
-    """Unit vector across the driven fibre."""
-    near, far = network.fibres[network.driven_fibre]
-    return np.array([-(far - near)[1], (far - near)[0]]) / np.linalg.norm(far - near)
-
-
 def _motor(scene: Scene, lines: list[Line], first: np.ndarray):
     """The node that a stroke carries, and its displacement for u = 1."""
     if scene.stroke is None:
@@ -245,7 +238,7 @@ def _motor(scene: Scene, lines: list[Line], first: np.ndarray):
             "node; take an even number of elements_per_section"
         )
     node = first[fibre] + nodes[weights.index(max(weights))]
-    return np.array([node]), scene.stroke * _lateral(network)[None]
+    return np.array([node]), scene.stroke * network.across[None]
 
 
 def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
@@ -261,7 +254,7 @@ def _load(scene: Scene, lines: list[Line], first: np.ndarray) -> np.ndarray:
     fibre = network.driven_fibre
     nodes, weights = nodes_about(lines[fibre].along, network.driven_distance)
     for node, weight in zip(nodes, weights):
-        load[first[fibre] + node] += weight * scene.force * _lateral(network)
+        load[first[fibre] + node] += weight * scene.force * network.across
     return load
 
 

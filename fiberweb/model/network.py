@@ -54,6 +54,18 @@ class Network:
         return np.linalg.norm(self.fibres[:, 1] - self.fibres[:, 0], axis=1)
 
     @property
+    def driven_point(self) -> np.ndarray:
+        """Where the driven fibre is shaken, shape (2,), m."""
+        near, far = self.fibres[self.driven_fibre]
+        return near + (far - near) * (self.driven_distance / np.linalg.norm(far - near))
+
+    @property
+    def across(self) -> np.ndarray:
+        """Unit vector across the driven fibre, along which it is shaken, shape (2,)."""
+        near, far = self.fibres[self.driven_fibre]
+        return np.array([-(far - near)[1], (far - near)[0]]) / np.linalg.norm(far - near)
+
+    @property
     def readouts(self) -> int:
         """How many there are: crossings, and the midpoints of all sections."""
         return len(self.crossings) + sum(len(stations) + 1 for stations in self.stations)

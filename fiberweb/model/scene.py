@@ -20,6 +20,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 ByFibre = Positive | tuple[Positive, ...]  # of all fibres, or of one after the other
 PositiveOrPinned = Annotated[float, Field(gt=0, strict=True)]  # infinity: one point
+Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 NotNegativeOrRigid = Annotated[float, Field(ge=0, strict=True)]  # infinity: rigid
 Seed = Annotated[int, Field(ge=0, le=2**32 - 1, strict=True)]  # what numpy's generator takes
 
@@ -56,7 +57,8 @@ class Scene:
             crossings that give).
         force: F_max (N), which the input multiplies; Eq. 3 if None.
         stroke: displacement (m) that the input multiplies instead: the driven point is carried
-            along a line across its fibre, whatever that takes, and there is no force.
+            along a line across its fibre, whatever that takes, and there is no force; below 0, the
+            other way.
         lever: length (m) of an arm that turns by the input times arcsin(stroke / lever), and
             whose end carries the driven point; None if the stroke is proportional to the input.
         tension: constant pull along each fibre at its far end (N).
@@ -99,7 +101,7 @@ class Scene:
     network: Network
     setup: Literal[tuple(SETUPS)] = "described"
     force: Positive | None = None
-    stroke: Positive | None = None
+    stroke: Finite | None = None
     lever: Positive | None = None
     tension: NotNegative = 0.01
     duration: Positive = 100.0
@@ -172,7 +174,9 @@ class Scene:
                 f"disturbance = {self.disturbance:g}: with a stroke the driven point is where the "
                 "motor carries it; leave one of the two out"
             )
-        if self.lever is not None and not (self.stroke or math.inf) <= self.lever:
+        if self.stroke == 0.0:
+            raise ValueError("stroke = 0 moves nothing; give a length, below 0 for the other way")
+        if self.lever is not None and not abs(self.stroke or math.inf) <= self.lever:
             raise ValueError(
                 f"lever = {self.lever:g} carries a point no further than its length; give a "
                 "stroke of at most that"
@@ -240,6 +244,13 @@ class Scene:
         return float(
             buckling.buckling_number(self.force, self.network.spacing, self.bending_stiffness)
         )
+
+    @property
+    def motor_angle(self) -> float:
+        """By which the lever turns for u = 1 (degrees); NaN without one."""
+        if self.lever is None:
+            return math.nan
+        return math.degrees(math.asin(abs(self.stroke) / self.lever))
 
     @property
     def samples(self) -> int:

@@ -111,8 +111,8 @@ def score_arrays(
     return _assemble(
         orders,
         lags / sample_rate,
-        _score_fits(nonlinear, options.scoring, horizon),
-        _score_fits(memory, options.scoring, horizon),
+        _score_fits(nonlinear, options, options.overshoot[0], horizon),
+        _score_fits(memory, options, options.overshoot[1], horizon),
     )
 
 
@@ -255,29 +255,30 @@ def _clipped_mean(c: np.ndarray) -> float:
     return float(np.maximum(c, 0.0).mean())  # np.maximum lets the NaN of an unstable run through
 
 
-def _score_fits(fits: Iterable[Fit], scoring: str, block: int) -> tuple:
+def _score_fits(fits: Iterable[Fit], options: Options, overshoot: float, block: int) -> tuple:
     """(c, c of the training part, raw c), each (q,), and the standard error of the total."""
-    sums = [_sums(fit, scoring, block) for fit in fits]
+    replaced = overshoot if options.scoring == "published" else None
+    sums = [_sums(fit, replaced, block) for fit in fits]
     test, train, raw = (np.concatenate(each, axis=-1) for each in zip(*sums, strict=True))
     c, c_train, c_raw = (capacity_of(each) for each in (test.sum(axis=1), train, raw))
-    lowest = 0.0 if scoring == "published" else -np.inf
+    lowest = 0.0 if options.scoring == "published" else -np.inf
     return np.maximum(c, lowest), np.maximum(c_train, lowest), c_raw, bootstrap_error(test)
 
 
-def _sums(fit: Fit, scoring: str, block: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _sums(fit: Fit, overshoot: float | None, block: int) -> tuple[np.ndarray, ...]:
     """`block_sums` of the test part; of the training part, and of the test part as it is, summed
-    over the blocks."""
+    over the blocks. What estimates overshoot is replaced, or with None nothing."""
     test = raw = block_sums(fit.target, fit.estimate, fit.test, block)
     train = fit.target, fit.estimate
-    if scoring == "published":
-        test = block_sums(*_replace_overshoot(fit, fit.test), fit.test, block)
-        train = _replace_overshoot(fit, fit.train)
+    if overshoot is not None:
+        test = block_sums(*_replace_overshoot(fit, fit.test, overshoot), fit.test, block)
+        train = _replace_overshoot(fit, fit.train, overshoot)
     train = block_sums(*train, fit.train, block)
     return test, train.sum(axis=1), raw.sum(axis=1)
 
 
-def _replace_overshoot(fit: Fit, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Target and estimate, both the part's target mean wherever the estimate leaves [-1, 1]."""
-    outside = np.abs(fit.estimate) > 1.0
+def _replace_overshoot(fit: Fit, part: np.ndarray, most: float) -> tuple[np.ndarray, np.ndarray]:
+    """Target and estimate, both the part's target mean wherever the estimate exceeds the most."""
+    outside = np.abs(fit.estimate) > most
     mean = mean_of(fit.target, part)
     return np.where(outside, mean, fit.target), np.where(outside, mean, fit.estimate)

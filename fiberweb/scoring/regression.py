@@ -30,8 +30,9 @@ class Options:
     - clean: all targets share the rows t >= horizon and one chronological split; readouts are
       standardised on the training part; c is kept raw.
     - published: as the authors scored. Readouts are standardised over the whole run, so the test
-      part leaks into their scale; each lag is split on its own; an estimate outside [-1, 1] is
-      replaced, with its target, by the target's mean before c is taken; c < 0 counts as 0.
+      part leaks into their scale; each lag is split on its own; an estimate outside [-1, 1], or
+      beyond `overshoot`, is replaced, with its target, by the target's mean before c is taken;
+      c < 0 counts as 0.
 
     ValueError for an unknown scoring or a value out of range.
     """
@@ -42,6 +43,9 @@ class Options:
     split: float = SPLIT  # fraction of the frames trained on
     skip: int = 0  # first frames dropped before anything else
     shuffle: bool = False  # published only: split nonlinear targets at random, which flatters C_nl
+    # published only: what estimates of Legendre and of recall targets may reach without being
+    # replaced
+    overshoot: tuple[float, float] = (1.0, 1.0)
 
     def __post_init__(self):
         if self.scoring not in list(SCORINGS):
@@ -50,12 +54,18 @@ class Options:
         above = " is not usable; give a finite number above 0"
         fraction = " is not usable; give a fraction, 0 to 1"
         frames = " is negative or no whole number; give a number of frames, 0 or more"
+        if not isinstance(self.overshoot, (list, tuple)) or len(self.overshoot) != 2:
+            raise ValueError(
+                f"overshoot = {shown(self.overshoot)} is no pair; give the largest estimate of "
+                "Legendre and the largest of recall targets"
+            )
         values = {
             "alpha": positive("alpha", self.alpha, above),
             "horizon": positive("horizon", self.horizon, above),
             "split": positive("split", self.split, fraction),
             "skip": whole("skip", self.skip, 0, frames),
             "shuffle": true_or_false("shuffle", self.shuffle),
+            "overshoot": tuple(positive("overshoot", most, above) for most in self.overshoot),
         }
         if not values["split"] < 1:
             raise ValueError(f"split = {shown(self.split)}{fraction}")

@@ -19,6 +19,7 @@ STUDIES = (
     "noise",
     "chaos",
     "robustness",
+    "twin",
     "narma",
     "buckling",
     "accuracy",

@@ -14,16 +14,19 @@ Beside it stand `figure.py` and `caption.rst`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
+from fiberweb.model.authors import OVERSHOOT
 from fiberweb.model.buckling import critical_force
 from fiberweb.model.network import Network
 from fiberweb.model.network import crosshatch as _crosshatch
 from fiberweb.model.network import polygon as _polygon
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.limits import HORIZON as HORIZON
+from fiberweb.sections import ExperimentSection
 
 CHOICES = ("best_c_nl", "best_c_m")
 
@@ -37,13 +40,18 @@ class Point:
     Attributes:
         scene: the physics.
         choice: where its force comes from: "eq3", "grid", "best_c_nl", "best_c_m",
-            "authors_c_nl", "authors_c_m", "authors", "buckling" or "mesh".
+            "authors_c_nl", "authors_c_m", "authors", "buckling" or "mesh"; of the experiment
+            "angle" or, where one of its parameters is changed, "parameter=value".
         numerics: keyword arguments of `fiberweb.simulate` instead of the config's; None for those.
+        scoring: keyword arguments of `fiberweb.score` over the config's.
+        camera: keyword arguments of `fiberweb.scoring.camera.films`; None if nothing films it.
     """
 
     scene: Scene
     choice: str
     numerics: dict | None = field(default=None, hash=False)
+    scoring: dict = field(default_factory=dict, hash=False)
+    camera: dict | None = field(default=None, hash=False)
 
 
 @dataclass(frozen=True)
@@ -71,16 +79,46 @@ class Lab:
         defaults: fields of a scene in this setup, as in the config.
         map: see `ForceMap`.
         thinned: whether the published setup runs only what two cores can afford.
+        experiment: the config's section of that name.
     """
 
     setup: str
     defaults: Mapping[str, object] = field(hash=False)
     map: ForceMap
     thinned: bool
+    experiment: ExperimentSection = field(hash=False)
 
     def scene(self, network: Network, **changes) -> Scene:
         """A network with the config's physics; changes win over the config."""
         return Scene(network, self.setup, **{**self.defaults, **changes})
+
+    def twin(self, n: int, angle: float, choice: str = "angle", **changes) -> Point:
+        """The experiment on a crosshatch of n at a motor angle (degrees), filmed and scored.
+
+        There is one scene; what the setups differ in is the scoring, the authors' (`published`) or
+        a clean one. Changes win over the keys of the config's section `experiment`.
+        """
+        given = self.experiment.model_copy(update=changes)
+        same = (
+            "duration", "sample_rate", "drive_rate", "lever", "tension", "diameter",
+            "youngs_modulus", "density", "loss_factor", "bond_stiffness", "damping",
+            "end_stiffness",
+        )  # fmt: skip
+        scene = Scene(
+            crosshatch(n, length=given.length),
+            stroke=given.direction * given.lever * math.sin(math.radians(angle)),
+            lowest_knot=0, ends="sprung", seed=self.defaults["seed"],
+            **{name: getattr(given, name) for name in same},
+        )  # fmt: skip
+        scoring = {"scoring": "clean"}
+        if self.setup == "published":
+            scoring = {"scoring": "published", "shuffle": True, "overshoot": OVERSHOOT}
+        camera = {
+            "pixels_per_mm": given.pixels_per_mm, "noise": given.marker_noise,
+            "seed": given.camera_seed, "frame_step": given.frame_step,
+        }  # fmt: skip
+        scoring |= {"alpha": given.alpha, "skip": given.skip}
+        return Point(scene, choice, {"accuracy": given.accuracy}, scoring, camera)
 
     def critical_force(self, spacing: float) -> float:
         """F_max (N) at which B = 1; spacing in m."""

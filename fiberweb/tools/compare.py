@@ -30,7 +30,7 @@ OUTCOMES = {
     *tables.SCALARS, "status", "run", "buckling_number", *tables.NUMERICS,
     "n_signals", "effective_rank", "verdict",  # features
     "kind", "fibre", "section", "axis", "kept", "needed",  # features_greedy
-    "rmse", "nrmse", "interdecile_range", "bias",  # narma
+    "recall_500ms",  # twin
     "amplitude_m", *chaos.COLUMNS, *calibration.TARGETS, "misfit",
 }  # fmt: skip
 

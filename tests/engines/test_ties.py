@@ -262,7 +262,9 @@ def test_the_limit_of_the_step_knows_bonds(bond):
         (dict(stroke=0.01, force=0.1), "force = 0.1 beside stroke"),
         (dict(stroke=0.01, disturbance=1e-9), "disturbance"),
         (dict(stroke=0.08, lever=0.07), "lever = 0.07"),
+        (dict(stroke=-0.08, lever=0.07), "lever = 0.07"),
         (dict(lever=0.07), "lever = 0.07"),
+        (dict(stroke=0.0), "stroke = 0 moves nothing"),
         (dict(ends="sprung"), "end_stiffness"),
         (dict(end_stiffness=50.0), "ends = 'sprung'"),
         (dict(diameter=(1e-3, 2e-3)), "diameter has 2 values for 8 fibres"),
@@ -293,6 +295,23 @@ def test_a_lever_turns_the_input():
         turned.stroke * drive.of_scene(turned)(times), 0.07 * np.sin(most * u), atol=1e-12
     )
     assert drive.rate(turned) == 100.0 and drive.rate(straight) == 2.0
+
+
+def test_a_stroke_may_point_the_other_way():
+    """The driven point goes there; a net without a near and a far end would be the mirror image."""
+    there = Scene(crosshatch(2, spacing=0.1), stroke=0.05, lever=0.07, duration=0.5, **TIED)
+    back = replace(there, stroke=-0.05)
+    assert there.motor_angle == back.motor_angle == pytest.approx(np.degrees(np.arcsin(5 / 7)))
+    assert np.isnan(replace(there, lever=None).motor_angle)
+    driven = []
+    for scene in (there, back):
+        moved = simulate(scene, "draft")["displacement"]
+        away = np.hypot(
+            *(moved[f"rest_{c}"] - at for c, at in zip("xy", scene.network.driven_point))
+        )
+        driven.append(moved.isel(readout=int(away.argmin())).sel(axis="y").values)
+    np.testing.assert_allclose(driven[0], -driven[1], rtol=0, atol=1e-9)
+    assert np.ptp(driven[0]) > 0.01
 
 
 def test_slanted_ends_slide_on_springs():

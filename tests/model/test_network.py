@@ -64,6 +64,10 @@ def test_directions_and_driven_points():
     np.testing.assert_allclose(hexagon.fibres[0], [[-0.25, 0], [0.25, 0]], atol=1e-15)
     assert hexagon.spacing == pytest.approx(0.25 * np.cos(np.pi / 3))
     assert hexagon.driven_distance == pytest.approx(0.25 + hexagon.spacing / 2)
+    np.testing.assert_allclose(hatch.driven_point, [0.25, 0.3])
+    np.testing.assert_allclose(hexagon.driven_point, [hexagon.spacing / 2, 0.0], atol=1e-15)
+    for network in (hatch, hexagon):
+        np.testing.assert_allclose(network.across, [0.0, 1.0], atol=1e-15)
 
 
 @settings(max_examples=30, deadline=None)

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fiberweb.model.network import crosshatch, polygon
@@ -80,6 +80,8 @@ def test_times_start_at_zero_and_are_spaced_by_the_sample_rate():
     st.sampled_from([HATCH, crosshatch(3, spacing=0.07), polygon(8, diagonals="skip-one")]),
 )
 def test_json_keeps_every_field(values, network):
+    gaps = values.get("setup") == "published" and network.topology == "polygon"
+    assume(not (gaps and values.get("crossing_stiffness") == math.inf))  # refused
     scene = Scene(network, **values)
     again = Scene.from_json(scene.to_json())
     assert again == scene

@@ -52,8 +52,8 @@ def oracle_clean(u, x, alpha):
     return np.transpose(result)
 
 
-def oracle_published(u, x, alpha, shuffle=False):
-    """[test c, train c, raw test c], each over the 61 targets."""
+def oracle_published(u, x, alpha, shuffle=False, most=(1.0, 1.0)):
+    """[test c, train c, raw test c], each over the 61 targets; most: of 10 polynomials, of lags."""
     u, x = min_max(u), StandardScaler().fit_transform(x)
     result = []
     for index, (start, z) in enumerate(all_targets(u)):
@@ -65,7 +65,8 @@ def oracle_published(u, x, alpha, shuffle=False):
         numbers = []
         for x_part, z_part in ((x_test, z_test), (x_train, z_train)):
             estimate, replaced = ridge.predict(x_part), z_part.copy()
-            outside = (estimate > 1) | (estimate < -1)
+            limit = most[index >= 10]
+            outside = (estimate > limit) | (estimate < -limit)
             estimate[outside] = replaced[outside] = z_part.mean()
             numbers.append(max(c_of(replaced, estimate), 0.0))
         result.append([*numbers, c_of(z_test, ridge.predict(x_test))])
@@ -95,6 +96,21 @@ def test_published_scoring_equals_sklearn(case, shuffle, request):
     np.testing.assert_allclose(np.r_[ours.nonlinear_train, ours.memory_train], train, atol=1e-8)
     np.testing.assert_allclose(np.r_[ours.nonlinear_raw, ours.memory_raw], raw, atol=1e-8)
     assert ours.c_m == pytest.approx(test[10:].mean(), abs=1e-8)
+
+
+def test_overshoot_is_of_polynomials_and_of_lags(collinear):
+    """As the scripts of the experiment have it: other limits than those of the simulations."""
+    u, x = collinear
+    of_each = []
+    for most in ((1.0, 1.0), (0.9, 1.2), (2.0, 1.5)):
+        ours = capacity.score_arrays(u, x, RATE, scoring="published", overshoot=most)
+        test, *_ = oracle_published(u, x, 0.01, most=most)
+        np.testing.assert_allclose(np.r_[ours.nonlinear, ours.memory], test, rtol=0, atol=1e-8)
+        of_each.append(ours.c_nl + ours.c_m)
+    assert len(set(of_each)) == 3
+    for bad, words in ((1.0, "overshoot = 1.0 is no pair"), ((0.0, 1.0), "overshoot = 0.0 is not")):
+        with pytest.raises(ValueError, match=words):
+            capacity.score_arrays(u, x, RATE, scoring="published", overshoot=bad)
 
 
 def test_skip_drops_first_frames(well_posed):

@@ -8,13 +8,17 @@ from matplotlib.collections import PolyCollection
 
 from fiberweb import Scene, crosshatch
 from fiberweb.claims import judge as claims
-from fiberweb.scoring import capacity, tables
+from fiberweb.config import lab, load
+from fiberweb.scoring.camera import film
 from fiberweb.scoring.recording import signals
 from fiberweb.simulation import dataset
+from fiberweb.studies import narma as study_of
 from fiberweb.studies.narma import figure
 from fiberweb.studies.narma import task as narma
 from fiberweb.tables import read, write
 from tests.figures.legible import assert_legible, assert_written, marked, said
+from tests.studies.experiment import asked_for
+from tests.studies.experiment import response as filmed
 
 RATE = 50.0
 
@@ -45,17 +49,20 @@ def recording(n, duration=8.0, status="ok", name="run"):
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    """(estimates, table) of a stable and an unstable run."""
+    """(estimates, table) of a stable and an unstable network, and of the twin in two readings."""
     folder = tmp_path_factory.mktemp("narma")
-    responses, capacities = [], []
-    for n, status in ((2, "ok"), (3, "unstable")):
-        response = recording(n, status=status, name=f"crosshatch-n{n:02d}")
-        responses.append(folder / f"{n}-response.nc")
-        capacities.append(folder / f"{n}-capacity.nc")
-        dataset.save(response, responses[-1])
-        dataset.save(capacity.score(response), capacities[-1])
-    estimates = narma.of_runs(responses, narma.ORDERS, 10.0, 1.0)
-    return estimates, narma.table(estimates, capacities, ["eq3", "eq3"])
+    twin = asked_for("narma", "published")[0]
+    runs = [
+        recording(2, name="crosshatch-n02"),
+        recording(3, status="unstable", name="crosshatch-n03"),
+    ]
+    runs.append(filmed(twin.scene, "twin"))
+    paths = [folder / f"{number}.nc" for number in range(3)]
+    for run, path in zip(runs, paths, strict=True):
+        dataset.save(run, path)
+    cameras = [None, None, twin.camera]
+    estimates = narma.of_runs(paths, cameras, narma.ORDERS, 10.0, 1.0, "clean")
+    return estimates, narma.table(estimates)
 
 
 # --- the recursions -----------------------------------------------------------------------------
@@ -143,43 +150,91 @@ def test_rate_must_divide_the_recordings():
         narma.estimates(recording(2), (2,), 7.0, 1.0)
 
 
-def test_estimates_are_ridge_on_standardised_readouts():
-    """The normal equations, written out; next is the same series one sample on."""
+@pytest.mark.parametrize("scoring", ["clean", "published"])
+def test_estimates_are_ridge_on_standardised_readouts(scoring):
+    """The normal equations, written out; next is the same series one sample on. The authors
+    standardise over the whole run."""
     response = recording(3)
-    estimates = narma.estimates(response, (2, 10), 10.0, 1.0)
+    estimates = narma.estimates(response, (2, 10), 10.0, 1.0, scoring)
     u, x = response["input"].values, signals(response)
     u, x = u[::5], x[::5].astype(float)
     train, test = np.arange(16, 64), np.arange(64, 80)  # 80 samples, a fifth of them dropped
     y = narma.series(0.2 * (u - u.min()) / (u.max() - u.min()), 10)
-    x = (x - x[train].mean(axis=0)) / x[train].std(axis=0)
+    fitted = train if scoring == "clean" else slice(None)
+    x = (x - x[fitted].mean(axis=0)) / x[fitted].std(axis=0)
+    middle = x[train].mean(axis=0)
     for timing, z in (("same", y[:-1]), ("next", y[1:])):
         mean = z[train].mean()
-        gram = x[train].T @ x[train] + np.eye(x.shape[1])
-        weights = np.linalg.solve(gram, x[train].T @ (z[train] - mean))
-        one = estimates.sel(run="run", timing=timing, order=10)
+        gram = (x[train] - middle).T @ (x[train] - middle) + np.eye(x.shape[1])
+        weights = np.linalg.solve(gram, (x[train] - middle).T @ (z[train] - mean))
+        one = estimates.sel(timing=timing, order=10)
         np.testing.assert_allclose(one["target"], z[test], rtol=1e-12)
         estimate = one["estimate"].sel(readout="network")
-        np.testing.assert_allclose(estimate, x[test] @ weights + mean, rtol=1e-8)
+        np.testing.assert_allclose(estimate, (x[test] - middle) @ weights + mean, rtol=1e-8)
     np.testing.assert_allclose(estimates["time"], test / 10.0)
+
+
+def test_perturbed_test_rows_change_no_weight_of_the_clean_scoring():
+    response = recording(3)
+    before = narma.estimates(response, (2,), 10.0, 1.0)["estimate"]
+    moved = response["displacement"].copy()
+    moved[-1] = 1.0  # not a frame of the task's rate but the last ...
+    moved[-5] = 1.0  # ... which is
+    after = narma.estimates(response.assign(displacement=moved), (2,), 10.0, 1.0)["estimate"]
+    np.testing.assert_array_equal(
+        after.sel(readout="network").isel(time=slice(None, -1)),
+        before.sel(readout="network").isel(time=slice(None, -1)),
+    )
+
+
+def test_the_twin_is_given_the_task_on_its_film(study):
+    """At u of the driven marker, in 0 to 0.2 from rest on, and at both readings of the rate."""
+    estimates, table = study
+    twin = asked_for("narma", "published")[0]
+    run = filmed(twin.scene, "twin")
+    for step, case in ((1, "twin"), (2, "twin, every 2")):
+        u = film(run, **twin.camera | {"frame_step": step})["input"].values[::6]
+        y = narma.series(0.2 * (u - u.min()) / (u.max() - u.min()), 2)[: len(u)]
+        of_case = estimates.sel(case=case, order=2, timing="same")
+        target = of_case["target"].dropna("time")
+        np.testing.assert_allclose(target, y[-len(target) :], atol=1e-5)
+    of_twin = table[table["body"] == "twin"]
+    assert set(zip(of_twin["frame_step"], of_twin["verdict"])) == {(1, True), (2, False)}
+    assert set(of_twin["run"]) == {"twin"} and (of_twin["angle_deg"].round(6) == 50.0).all()
+    signals_of = of_twin[of_twin["readout"] == "network"]["n_signals"]
+    assert set(signals_of) == {2 * 55}
+    assert not table.loc[table["body"] == "network", "verdict"].any()
+
+
+def test_points_are_networks_and_the_twin_or_the_twin_alone():
+    ours, theirs = (asked_for("narma", setup) for setup in ("described", "published"))
+    assert [p.scene.network.n for p in ours] == [6, 8, 4]
+    assert [p.camera is None for p in ours] == [True, True, False]
+    assert [p.scene for p in theirs] == [ours[-1].scene]
+    config = load()
+    here = lab(config, "described")
+    with pytest.raises(ValueError, match=r"narma.rate = 50 Hz does not divide .* 120 Hz"):
+        study_of.check(config.narma.model_copy(update={"rate": 50.0}), here)
 
 
 def test_table_holds_the_measures_of_the_errors(study):
     estimates, table = study
-    assert len(table) == 2 * 3 * 5 * 2
-    assert list(table.columns[: len(tables.COLUMNS)]) == list(tables.COLUMNS)
+    assert len(table) == 4 * 3 * 5 * 2
+    assert list(table.columns[: len(narma.CASE)]) == list(narma.CASE)
     row = table[(table["n"] == 2) & (table["order"] == 5) & (table["timing"] == "same")]
     row = row.set_index("readout").loc["powers"]
-    at = {"run": row["run"], "order": 5, "timing": "same"}
-    z = estimates["target"].sel(at).values
-    error = estimates["estimate"].sel(at | {"readout": "powers"}).values - z
+    at = {"case": row["case"], "order": 5, "timing": "same"}
+    z = estimates["target"].sel(at).dropna("time")
+    error = (estimates["estimate"].sel(at | {"readout": "powers"}) - z).values
     assert row["rmse"] == pytest.approx(np.sqrt(np.mean(error**2)))
-    assert row["nrmse"] == pytest.approx(np.sqrt(np.mean(error**2)) / np.std(z))
+    assert row["nrmse"] == pytest.approx(np.sqrt(np.mean(error**2)) / z.values.std())
     assert row["bias"] == pytest.approx(np.mean(error))
+    assert row["target_mean"] == pytest.approx(z.values.mean())
     low, high = np.percentile(error, [10, 90])
     assert row["interdecile_range"] == pytest.approx(high - low)
     signals = table[table["n"] == 2].groupby("readout")["n_signals"].first().to_dict()
     assert signals == {"network": 16, "echo_state": 16, "u": 1, "derivatives": 4, "powers": 3}
-    assert set(table["alpha"]) == {1.0} and set(table["force_choice"]) == {"eq3"}
+    assert set(table["alpha"]) == {1.0} and set(table["setup"]) == {"described"}
 
 
 def test_an_unstable_run_has_no_errors_but_its_input_has(study):
@@ -204,21 +259,26 @@ def test_figure_shows_every_readout_and_an_x_for_the_unstable(drawn):
     assert_written(path)
     assert_legible(picture)
     words = said(picture)
-    for word in ("NARMA-10", "2×2", "3×3", "ESN\n16", "unstable run", "2×2 network", "Bias"):
+    for word in ("NARMA-10", "2×2", "3×3", "ESN 16", "unstable run", "4×4 twin", "Bias"):
         assert word in words
-    # three panels each of violins, RMSE, interdecile range and bias; the 3x3 is the second readout
-    assert [list(mark.get_xdata()) for mark in marked(picture)] == [[1]] * 12
+    # three panels each of violins, RMSE, interdecile range and bias; the 3x3 is the second network
+    at = 5 + figure.GAP + 1
+    assert [list(mark.get_xdata()) for mark in marked(picture)] == [[at]] * 12
     violins = [body for body in picture.findobj(PolyCollection) if len(body.get_paths())]
-    assert len(violins) == 3 * 6  # a network, two of echo states, and three of the input alone
+    # twin, echo state and three of its input; a network, two echo states and three of their input
+    assert len(violins) == 3 * (5 + 6)
 
 
 def test_bars_are_the_measures_of_the_table_in_thousandths(study, drawn):
     columns = np.reshape(drawn[0].axes, (5, 3)).T
     table = study[1][study[1]["timing"] == "same"]
     for column, order in zip(columns, narma.ORDERS):
-        rows = table[(table["order"] == order)].set_index(["n", "readout"])
-        shown = [(2, "network"), (2, "echo_state"), (3, "echo_state")]
-        shown += [(2, name) for name in ("derivatives", "powers", "u")]
+        rows = table[(table["order"] == order)].set_index(["case", "readout"])
+        alone = ("derivatives", "powers", "u")
+        shown = [("twin", name) for name in ("network", "echo_state", *alone)]
+        shown += [("crosshatch-n02", "network")]
+        shown += [(f"crosshatch-n{n:02d}", "echo_state") for n in (2, 3)]
+        shown += [("crosshatch-n02", name) for name in alone]
         for ax, measure in zip(column[1:4], figure.MEASURES):
             heights = [bar.get_height() for bar in ax.patches]
             np.testing.assert_allclose(heights, 1e3 * rows.loc[shown, measure])

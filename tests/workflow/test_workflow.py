@@ -31,6 +31,13 @@ pretension: {spacing: [0.06], tension: [0.01], published_force: [0.05]}
 features: {n: 4, force: [0.05], verdict_force: 0.05}
 capacity_origin: {n: [2], force_n: 2, force: [0.05], element: [0.02], step: [5.0e-6]}
 memory_origin: {n: [2], filter_element: [0.02], filter_step: [5.0e-6]}
+experiment: {duration: 8.0, skip: 100}
+twin:
+  n: [4]
+  angle: [50.0]
+  sensitivity: {angle: [50.0], tension: [], lever: [], direction: [], damping: [], loss_factor: [],
+    bond_stiffness: [], youngs_modulus: []}
+narma: {twin_n: 4}
 """
 # the profile asks for an executor that only a cluster's user installs
 CLUSTER = ("--profile", "profiles/slurm", "--executor", "local")

@@ -1,41 +1,49 @@
-"""The NARMA task of Fig. 6, on simulated networks."""
+"""The NARMA task of Fig. 6, on the experiment's twin and on simulated networks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 from fiberweb.scoring.tasks import ORDERS
-from fiberweb.sections import Positive, Section, Size, Some, key
+from fiberweb.sections import EXPERIMENTS, VALIDATION, Angle, Positive, Section, Size, Some, key
 from fiberweb.studies.base import Figure, Lab, Point, Table, crosshatch, every
 
 LEAST_SAMPLES = 2 * max(ORDERS)
 
 
 class NarmaSection(Section):
-    """The NARMA task, Fig. 6, on simulated networks."""
+    """The NARMA task, Fig. 6, on the experiment's twin and on simulated networks."""
 
-    n: Some[Size] = key([6, 8], "sizes of the crosshatch, N")
-    length: Positive = key(0.5, "fibre length", "m")
-    order: Some[Literal[ORDERS]] = key([*ORDERS], "orders of the recursion")
-    rate: Positive = key(10.0, "rate of the task", "Hz")
-    alpha: Positive = key(1.0, "ridge penalty")
+    twin_n: Size = key(6, "size of the twin's crosshatch, N", "", VALIDATION)
+    twin_angle: Angle = key(50.0, "its motor angle", "degrees", VALIDATION)
+    n: Some[Size] = key([6, 8], "sizes of the simulated crosshatches, N")
+    length: Positive = key(0.5, "their fibre length", "m")
+    order: Some[Literal[ORDERS]] = key([*ORDERS], "orders of the recursion", "", VALIDATION)
+    rate: Positive = key(10.0, "rate of the task", "Hz", VALIDATION)
+    alpha: Positive = key(1.0, "ridge penalty", "", EXPERIMENTS)
 
 
 SECTION = NarmaSection
-SETUPS = ("described",)
+SETUPS = ("described", "published")  # the authors' way of scoring is for the twin alone
 
 
 def points(section: NarmaSection, lab: Lab) -> Iterator[Point]:
-    """The networks that are given the task."""
-    for n in section.n:
-        yield Point(lab.scene(crosshatch(n, length=section.length)), "eq3")
+    """The networks that are given the task, and the twin."""
+    if lab.setup == "described":
+        for n in section.n:
+            yield Point(lab.scene(crosshatch(n, length=section.length)), "eq3")
+    yield lab.twin(section.twin_n, section.twin_angle)
 
 
 def check(section: NarmaSection, lab: Lab) -> None:
-    """Raise ValueError if the recording cannot be sampled at the task's rate, or is too short."""
-    duration, sample_rate = lab.defaults["duration"], lab.defaults["sample_rate"]
-    check_samples(-(-round(duration * sample_rate) // frames_a_sample(sample_rate, section.rate)))
+    """Raise ValueError if a recording cannot be sampled at the task's rate, or is too short."""
+    scene, given = lab.defaults, lab.experiment
+    rates = [(scene["duration"], scene["sample_rate"], 1)]
+    rates += [(given.duration, given.sample_rate, step) for step in given.frame_step]
+    for duration, rate, step in rates:
+        frames = -(-round(duration * rate) // step)
+        check_samples(-(-frames // frames_a_sample(rate, section.rate)))
 
 
 def frames_a_sample(sample_rate: float, rate: float) -> int:
@@ -58,16 +66,20 @@ def check_samples(samples: int) -> None:
         )
 
 
+def asked(section: NarmaSection, runs: Sequence) -> dict:
+    """Options: the task, how runs are filmed, and whose way of scoring it is."""
+    (scoring,) = {run.scoring["scoring"] for run in runs if run.camera}
+    return {
+        "cameras": [run.camera for run in runs], "scoring": scoring,
+        "orders": section.order, "rate": section.rate, "alpha": section.alpha,
+    }  # fmt: skip
+
+
 TABLES = {
-    "narma.csv": Table(
-        "fiberweb.studies.narma.task:table", capacities=every, choices=True,
-        tables=("narma_errors.nc",),
-    ),
+    "narma.csv": Table("fiberweb.studies.narma.task:table", tables=("narma_errors.nc",)),
     "narma_errors.nc": Table(
-        "fiberweb.studies.narma.task:of_runs", responses=every,
-        options=lambda section, _: {
-            "orders": section.order, "rate": section.rate, "alpha": section.alpha
-        },
+        "fiberweb.studies.narma.task:of_runs", responses=every, options=asked
     ),
 }  # fmt: skip
 FIGURES = {"narma": Figure("fiberweb.studies.narma.figure:draw", tuple(TABLES))}
+JUDGED_BY = ("narma.csv",)

@@ -1,4 +1,4 @@
-"""The NARMA-n task on the readouts of a network (paper, Fig. 6, there on the experiment).
+"""The NARMA-n task on the readouts of a network or of the experiment's twin (paper, Fig. 6).
 
 The recursions are those of `fiberweb.scoring.tasks`, with u scaled to [0, 0.2]. One sample is one
 frame of the task's rate, 10 Hz in the paper; of a recording, every k-th frame is taken.
@@ -6,6 +6,7 @@ frame of the task's rate, 10 Hz in the paper; of a recording, every k-th frame i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -14,10 +15,12 @@ import pandas as pd
 import xarray as xr
 from sklearn.linear_model import Ridge
 from sklearn.model_selection import train_test_split
-from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 
-from fiberweb.scoring import esn, recording, tables
+from fiberweb import tables
+from fiberweb.model.scene import Scene
+from fiberweb.scoring import esn, recording
+from fiberweb.scoring.camera import films
 from fiberweb.scoring.capacity import trivial_readouts
 from fiberweb.scoring.regression import scale_input
 from fiberweb.scoring.tasks import ORDERS as ORDERS
@@ -30,6 +33,10 @@ AMPLITUDE = 0.2  # largest u of the task
 DROPPED = 200  # first samples left out of training and test ...
 DROPPED_PART = 0.2  # ... or this part of a recording too short for that
 TESTED = 0.25  # last part of the rest
+CASE = (
+    "setup", "topology", "n", "spacing_m", "force_N", "angle_deg", "body", "frame_step", "verdict",
+    "status", "run",
+)  # fmt: skip
 
 
 def series(u: np.ndarray, order: int) -> np.ndarray:
@@ -66,24 +73,29 @@ def split(samples: int) -> tuple[np.ndarray, np.ndarray]:
     return tuple(train_test_split(kept, test_size=TESTED, shuffle=False))
 
 
-def estimates(response: xr.Dataset, orders: Sequence[int], rate: float, alpha: float) -> xr.Dataset:
+def estimates(
+    response: xr.Dataset, orders: Sequence[int], rate: float, alpha: float, scoring: str = "clean"
+) -> xr.Dataset:
     """What ridge regression makes of the task, on the readouts of a run and on others.
 
-    Readouts are standardised on the training part; `TIMINGS` says which y they estimate: that of
-    the same sample (the authors' script) or of the next (the caption of Fig. 6).
+    `TIMINGS` says which y the readouts estimate: that of the same sample (the authors' script) or
+    of the next (the caption of Fig. 6).
 
     Args:
-        response: of `fiberweb.simulate`, with the attribute ``run``. Of an unstable run, the
-            network's estimates are NaN, and the others, made of the input, are not.
+        response: of `fiberweb.simulate` or a film of it. Of an unstable run, the network's
+            estimates are NaN, and the others, made of the input, are not.
         orders: of `ORDERS`.
         rate: of the task (Hz); divides the recording's.
         alpha: ridge penalty against the sum of squares.
+        scoring: readouts are standardised on the training part ("clean") or over the whole run
+            ("published", the authors' script, which also replaces estimates beyond 2, where none
+            come).
 
     Returns:
-        Dimensionless ``target(run, timing, order, time)`` and ``estimate(run, readout, timing,
-        order, time)`` on the test part, ``n_signals(run, readout)``, and attributes rate and
-        alpha. One run; readout is "network", "echo_state" (`esn.states`, a node for each signal
-        of the network) or one of `capacity.trivial_readouts`; time (s) is that of the readouts.
+        Dimensionless ``target(timing, order, time)`` and ``estimate(readout, timing, order, time)``
+        on the test part, ``n_signals(readout)``, and attributes rate and alpha. readout is
+        "network", "echo_state" (`esn.states`, a node for each signal of the network) or one of
+        `capacity.trivial_readouts`; time (s) is that of the readouts.
 
     Raises:
         ValueError: a rate that does not divide the recording's, or too few samples.
@@ -92,10 +104,11 @@ def estimates(response: xr.Dataset, orders: Sequence[int], rate: float, alpha: f
     readouts = _readouts(response, step)
     scaled = scale_input(response["input"].values[::step])
     train, test = split(len(scaled))
+    fitted = train if scoring == "clean" else slice(None)
     y = np.column_stack([series(AMPLITUDE * (1.0 + scaled) / 2.0, order) for order in orders])
     targets = np.stack([y[ahead : len(scaled) + ahead] for ahead in TIMINGS.values()], axis=1)
     flat = targets.reshape(len(scaled), -1)
-    of_each = [_estimate(x, flat, train, test, alpha) for x in readouts.values()]
+    of_each = [_estimate(x, flat, fitted, train, test, alpha) for x in readouts.values()]
     shape = (len(readouts), len(test), len(TIMINGS), len(orders))
     estimate = np.reshape(of_each, shape).transpose(0, 2, 3, 1)
     return xr.Dataset(
@@ -111,52 +124,84 @@ def estimates(response: xr.Dataset, orders: Sequence[int], rate: float, alpha: f
             "time": ("time", test / rate, {"units": "s"}),
         },
         {"rate": rate, "alpha": alpha},
-    ).expand_dims(run=[response.attrs["run"]])
+    )
 
 
 def of_runs(
-    response_paths: Sequence[str | Path], orders: Sequence[int], rate: float, alpha: float
+    response_paths: Sequence[str | Path],
+    cameras: Sequence[Mapping | None],
+    orders: Sequence[int],
+    rate: float,
+    alpha: float,
+    scoring: str,
 ) -> xr.Dataset:
-    """`estimates` of each response along ``run``; errors as there."""
-    of_each = [estimates(dataset.load(path), orders, rate, alpha) for path in response_paths]
-    return xr.concat(of_each, "run", join="exact", combine_attrs="identical")
+    """`estimates` of each response and film along ``case``; errors as there.
+
+    Args:
+        cameras: of each path, keyword arguments of `fiberweb.scoring.camera.films`; None for a
+            simulated network, which nothing films.
+
+    Returns:
+        With coordinates over case: those of `CASE`. body is "twin" or "network"; verdict says
+        whether it is the twin's first reading of the frame rate, by which claims are judged; setup
+        is "published" for that scoring. Cases have test parts of their own, NaN beyond them.
+    """
+    of_each = []
+    for path, camera in zip(response_paths, cameras, strict=True):
+        response = dataset.load(path)
+        read = films(response, **camera) if camera else [(1, response)]
+        for step, film in read:
+            case = estimates(film, orders, rate, alpha, scoring).expand_dims(
+                case=[film.attrs["run"] if step == 1 else f"{film.attrs['run']}, every {step}"]
+            )
+            scene = Scene.from_json(film.attrs["scene"])
+            first = bool(camera) and step == camera["frame_step"][0]
+            values = (
+                "published" if scoring == "published" else "described",
+                scene.network.topology, scene.network.n, scene.network.spacing,
+                math.nan if scene.force is None else scene.force, scene.motor_angle,
+                "twin" if camera else "network", step, int(first), film.attrs["status"],
+                film.attrs["run"],
+            )  # fmt: skip
+            known = {name: ("case", [value]) for name, value in zip(CASE, values, strict=True)}
+            of_each.append(case.assign_coords(known))
+    return xr.concat(of_each, "case", join="outer", combine_attrs="identical")
 
 
-def measures(errors: xr.Dataset) -> pd.DataFrame:
+def table(errors: xr.Dataset) -> pd.DataFrame:
     """How far the estimates are off, on the test part.
 
     Args:
-        errors: from `estimates`, of one run or several along ``run``.
+        errors: of `of_runs`.
 
     Returns:
-        One row for each run, order, readout and timing, in the dataset's order: rmse, nrmse (over
-        the standard deviation of the target), interdecile_range (between the 10th and the 90th
-        percentile of the error, estimate - target), bias (the mean error), n_signals and alpha.
+        One row for each case, order, readout and timing: `CASE`, rmse, nrmse (over the standard
+        deviation of the target), interdecile_range (between the 10th and the 90th percentile of the
+        error, estimate - target), bias (the mean error), target_mean, n_signals and alpha.
     """
-    error = errors["estimate"] - errors["target"]
+    rows = pd.concat([_measures(errors.isel(case=[at])) for at in range(errors.sizes["case"])])
+    rows = rows.assign(alpha=errors.attrs["alpha"], verdict=rows["verdict"].astype(bool))
+    first = [*CASE, "case", "order", "readout", "timing"]
+    return tables.ordered(rows[[*first, *(name for name in rows if name not in first)]])
+
+
+def _measures(errors: xr.Dataset) -> pd.DataFrame:
+    """The rows of one case."""
+    errors = errors.dropna("time", subset=["target"])  # what others have beyond its test part
+    error, target = errors["estimate"] - errors["target"], errors["target"]
     rmse = np.sqrt((error**2).mean("time", skipna=False))
     low, high = (error.quantile(q, "time", skipna=False).drop_vars("quantile") for q in (0.1, 0.9))
     columns = xr.Dataset(
         {
             "rmse": rmse,
-            "nrmse": rmse / errors["target"].std("time"),
+            "nrmse": rmse / target.std("time"),
             "interdecile_range": high - low,
             "bias": error.mean("time", skipna=False),
+            "target_mean": target.mean("time"),
             "n_signals": errors["n_signals"],
         }
     )
-    rows = columns.to_dataframe(dim_order=["run", "order", "readout", "timing"]).reset_index()
-    return rows.assign(alpha=errors.attrs["alpha"])
-
-
-def table(
-    errors: xr.Dataset, capacity_paths: Sequence[str | Path], choices: Sequence[str]
-) -> pd.DataFrame:
-    """`tables.study` of the runs with the columns of `measures` after it: one row for each run,
-    order, readout and timing. status, c_nl and the like are those of the run's own network."""
-    return tables.study(capacity_paths, choices).merge(
-        measures(errors), on="run", validate="one_to_many"
-    )
+    return columns.to_dataframe(dim_order=["case", "order", "readout", "timing"]).reset_index()
 
 
 def _readouts(response: xr.Dataset, step: int) -> Mapping[str, np.ndarray]:
@@ -171,9 +216,10 @@ def _readouts(response: xr.Dataset, step: int) -> Mapping[str, np.ndarray]:
     } | {name: x[::step] for name, x in trivial.items()}
 
 
-def _estimate(x, targets, train, test, alpha) -> np.ndarray:
-    """(test samples, q) of targets (T, q) from readouts (T, p); NaN from readouts that have any."""
+def _estimate(x, targets, fitted, train, test, alpha) -> np.ndarray:
+    """(test samples, q) of targets (T, q) from readouts (T, p), standardised on the fitted rows;
+    NaN from readouts that have any."""
     if not np.isfinite(x).all():
         return np.full((len(test), targets.shape[1]), np.nan)
-    model = make_pipeline(StandardScaler(), Ridge(alpha=alpha))
-    return model.fit(x[train], targets[train]).predict(x[test])
+    x = StandardScaler().fit(x[fitted]).transform(x)
+    return Ridge(alpha=alpha).fit(x[train], targets[train]).predict(x[test])
