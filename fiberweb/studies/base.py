@@ -27,6 +27,7 @@ from fiberweb.model.network import polygon as _polygon
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.limits import HORIZON as HORIZON
 from fiberweb.sections import ExperimentSection
+from fiberweb.simulation.plan import ACCURACIES
 
 CHOICES = ("best_c_nl", "best_c_m")
 
@@ -41,7 +42,7 @@ class Point:
         scene: the physics.
         choice: where its force comes from: "eq3", "grid", "best_c_nl", "best_c_m",
             "authors_c_nl", "authors_c_m", "authors", "buckling" or "mesh"; of the experiment
-            "angle" or, where one of its parameters is changed, "parameter=value".
+            "angle" or, in its panel of parameters, "same" or "parameter=value".
         numerics: keyword arguments of `fiberweb.simulate` instead of the config's; None for those.
         scoring: keyword arguments of `fiberweb.score` over the config's.
         camera: keyword arguments of `fiberweb.scoring.camera.films`; None if nothing films it.
@@ -118,7 +119,8 @@ class Lab:
             "seed": given.camera_seed, "frame_step": given.frame_step,
         }  # fmt: skip
         scoring |= {"alpha": given.alpha, "skip": given.skip}
-        return Point(scene, choice, {"accuracy": given.accuracy}, scoring, camera)
+        accuracy = _accuracy(scene.network.spacing, given.element)
+        return Point(scene, choice, {"accuracy": accuracy}, scoring, camera)
 
     def critical_force(self, spacing: float) -> float:
         """F_max (N) at which B = 1; spacing in m."""
@@ -132,6 +134,17 @@ class Lab:
                 f"{name} = {duration:g} s is too short for the recall horizon of {HORIZON:g} s: "
                 f"record at least {least:g} s, twice the horizon{why}"
             )
+
+
+def _accuracy(spacing: float, element: float) -> str:
+    """The coarsest accuracy without an element longer than this (m)."""
+    for name, elements in ACCURACIES.items():
+        if spacing <= element * elements * (1 + 1e-9):
+            return name
+    raise ValueError(
+        f"element = {element:g} m is shorter than those of accuracy {name!r}, "
+        f"{spacing / elements:.2g} m at a spacing of {spacing:.2g} m; give a longer one"
+    )
 
 
 def every(runs: Sequence, section) -> Sequence:

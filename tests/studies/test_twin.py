@@ -61,10 +61,10 @@ def test_one_simulation_serves_all_cameras_and_both_setups():
 
 def test_a_sensitivity_changes_one_thing():
     points = asked_for("twin", **TWIN)
-    assert len(points) == 2 * 2 + 3 * 2
+    assert len(points) == 2 * 2 + 4 * 2
     by_choice = {p.choice: p for p in points if p.scene.network.n == 6 and p.scene.motor_angle > 49}
     same, tense, pulled, sharp = (
-        by_choice[name] for name in ("angle", "tension=3", "direction=1", "marker_noise=0")
+        by_choice[name] for name in ("same", "tension=3", "direction=1", "marker_noise=0")
     )
     assert (same.scene.tension, tense.scene.tension) == (1.0, 3.0)
     assert pulled.scene.stroke == -same.scene.stroke
@@ -76,14 +76,25 @@ def test_runs_of_the_figure_and_of_the_panel():
     of = runs(config, "twin", "described")
     assert [run.choice for run in of_angles(of, config.twin)] == ["angle"] * 4
     chosen = of_sensitivity(of, config.twin)
-    assert [run.choice for run in chosen].count("angle") == 2  # both sizes at 50 degrees
+    assert [run.choice for run in chosen].count("same") == 2  # both sizes at 50 degrees
     assert len(chosen) == 2 + 6
+
+
+def test_elements_are_no_longer_than_asked_for():
+    """Four in the 104 mm of a 4x4's sections, two in the 74 mm of a 6x6's, and as few in the panel,
+    where the 6x6 is the same run."""
+    of = {}
+    for run in runs(load(), "twin", "described"):
+        of.setdefault((run.choice, run.scene.network.n), set()).add(run.numerics["accuracy"])
+    assert (of["angle", 4], of["angle", 6]) == ({"standard"}, {"draft"})
+    assert (of["same", 4], of["damping=1", 6]) == ({"draft"}, {"draft"})
+    with pytest.raises(ValueError, match=r"element = 0\.001 m is shorter than .* 'reference'"):
+        asked_for("twin", experiment={"duration": 8.0, "skip": 30, "element": 0.001})
 
 
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({"twin": {"angle": [30.0]}}, "twin.sensitivity.angle .* has 25 degrees, which is not am"),
         ({"experiment": {"duration": 6.0}}, r"experiment.duration = 6 s .* record at least"),
         ({"experiment": {"direction": 0}}, "experiment.direction = 0"),
         ({"experiment": {"frame_step": [0]}}, "experiment.frame_step.0 = 0"),
@@ -116,7 +127,7 @@ def study(tmp_path_factory):
             found[setup, point.choice, point.scene.network.n, at] = run, point
         how = {"scoring": points[0].scoring}
         main = [n for n, p in enumerate(points) if p.choice == "angle"]
-        few = [n for n, p in enumerate(points) if round(p.scene.motor_angle) == 50]
+        few = [n for n, p in enumerate(points) if p.choice != "angle"]
         of_main = {
             "response_paths": [paths[n] for n in main],
             "cameras": [points[n].camera for n in main],
