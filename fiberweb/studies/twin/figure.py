@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from fiberweb.figures import panels, plots, style
-from fiberweb.studies.twin.tables import ALL, REDUCED, TRIVIAL
+from fiberweb.scoring.groups import ALL, REDUCED
 
 GROUPS = {
     ALL: "all\nmarkers", "lateral_midpoints": "lateral\nmidpoints",
@@ -53,7 +53,7 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
 def _over_angle(part: SubFigure, rows: pd.DataFrame, scoring: str) -> None:
     """C_nl and C_m of all markers over the angle, a line for each size and reading."""
     colour = plots.colours(rows["n"])
-    alone = rows[rows["readouts"].isin(TRIVIAL) & rows["verdict"]]
+    alone = rows[rows["readouts"].isin(list(plots.BASELINES)) & rows["verdict"]]
     baselines = alone.groupby("readouts")[["c_nl", "c_m"]].mean().reset_index(names="readout")
     markers = rows[rows["readouts"] == ALL]
     for ax, letter, name in zip(part.subplots(1, 2), "ab", plots.TOTALS):
@@ -163,7 +163,7 @@ def _bars(ax: Axes, scored: pd.DataFrame, name: str, shade: Sequence[float], asi
     for place, group in enumerate(GROUPS):
         c, error = scored.loc[group, [name, f"{name}_se"]].astype(float)
         alone = {"color": style.FAINT, "edgecolor": style.GREY}
-        look = alone if group in TRIVIAL else {"color": shade}
+        look = alone if group in plots.BASELINES else {"color": shade}
         ax.bar(
             place + aside, c, BAR, linewidth=0.5, yerr=error,
             error_kw={"elinewidth": 0.7, "ecolor": style.INK}, **look,

@@ -24,7 +24,6 @@ from fiberweb.claims.judge import (
 )
 from fiberweb.model.authors import LISTED_AT_500MM
 from fiberweb.scoring import groups
-from fiberweb.studies.twin.tables import ALL
 
 SMALL, LARGE = 4, 6  # N of the experiment
 PLATEAU = 40.0  # degrees, from which on it lies, by the paper
@@ -170,7 +169,7 @@ def table(sensitivity: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(records, columns=[*keys, "observation", "part", "verdict", "text"])
 
 
-def over_angle(scores: pd.DataFrame, n: int, column: str, readouts: str = ALL) -> pd.Series:
+def over_angle(scores: pd.DataFrame, n: int, column: str, readouts: str = groups.ALL) -> pd.Series:
     """A column of one size over the angle (degrees); NotComputed if a run is missing or unstable.
 
     ValueError if there are two runs where one is needed.

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fiberweb.figures import panels, plots, style
-from fiberweb.studies.twin.tables import ALL
+from fiberweb.scoring.groups import ALL
 
 PARAMETERS = {  # label with unit, and what a value is multiplied by
     "none": ("as\nstated", 1.0),
