@@ -163,7 +163,10 @@ class ExperimentSection(Section):
     length: Positive = key(0.52, "fibre length", "m", EXPERIMENTS)
     diameter: Positive = key(0.45e-3, "diameter of the fibres", "m", EXPERIMENTS)
     end_stiffness: Positive = key(52.5, "springs at the far ends", "N/m", EXPERIMENTS)
-    drive_rate: Positive = key(2.0, "random knots of the motor angle per second", "Hz", EXPERIMENTS)
+    # below, 501 knots are more seconds than the motor's table of angles has room for
+    drive_rate: Annotated[float, Field(ge=0.1, allow_inf_nan=False)] = key(
+        2.0, "random knots of the motor angle per second", "Hz", EXPERIMENTS
+    )
     duration: Positive = key(150.0, "length of the recording", "s", EXPERIMENTS)
     sample_rate: Positive = key(
         120.0, "frames per second: the text's, which the scripts divide by too", "Hz", EXPERIMENTS
