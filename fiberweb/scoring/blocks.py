@@ -9,6 +9,7 @@ import numpy as np
 from fiberweb.scoring.regression import mean_of
 
 REPLICATES = 400  # of the bootstrap
+INTERVAL = (2.5, 97.5)  # percentiles
 
 
 def block_sums(target, estimate, part, block) -> np.ndarray:
@@ -44,6 +45,13 @@ def redrawn(sums: np.ndarray) -> np.ndarray | None:
         return None
     draws = np.random.default_rng(0).multinomial(blocks, np.full(blocks, 1 / blocks), REPLICATES)
     return draws.astype(float) @ sums
+
+
+def interval(draws: np.ndarray | None) -> tuple[float, float]:
+    """The ends between which 95 % of redrawn values (REPLICATES,) lie; NaN of None."""
+    return (
+        (math.nan, math.nan) if draws is None else tuple(map(float, np.percentile(draws, INTERVAL)))
+    )
 
 
 def bootstrap_error(sums: np.ndarray) -> float:

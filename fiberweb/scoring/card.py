@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from fiberweb.arguments import check_names, plain
 from fiberweb.errors import sentence
 from fiberweb.scoring import arguments, processing, rank, recording, tasks
-from fiberweb.scoring.blocks import block_sums, capacity_of, redrawn
+from fiberweb.scoring.blocks import block_sums, capacity_of, interval, redrawn
 from fiberweb.scoring.capacity import trivial_readouts
 from fiberweb.scoring.card_options import CardOptions
 from fiberweb.scoring.limits import check_frames, training_end
@@ -36,7 +36,6 @@ LEGENDRE = np.arange(1, 11)  # orders of C_nl, as in the paper
 LONGEST = 50_000  # frames that are scored: more would tell no more
 SCORES = ["readout", "quantity", "value", "low", "high"]
 PROFILE = ["readout", "degree", "delay_s", "capacity"]
-INTERVAL = (2.5, 97.5)  # percentiles
 
 
 @dataclass(frozen=True)
@@ -109,7 +108,7 @@ def card(response: xr.Dataset, **options) -> Card:
     for part, where in {"training": fitted, "test": slice(fitted.stop, None)}.items():
         if not np.ptp(u[where]):
             raise ValueError(f"the input does not change in the {part} part; cut the recording")
-    x, scaled = x[:, _different(x[fitted])], scale_input(u)
+    x, scaled = x[:, rank.different(x[fitted])], scale_input(u)
     targets, refused = _targets(scaled, horizon, chosen)
     taps = chosen.taps or _remembered(scaled, x, fitted, chosen, horizon)
     functions = processing.basis(scaled, fitted, horizon)
@@ -186,10 +185,7 @@ class _Judge:
             )
             for name, group in groups.items()
         }
-        at_delay: dict[tuple[int, int], float] = {}
-        for degree, delay, value in zip(functions.degree, functions.delay, np.where(counted, c, 0)):
-            where = int(degree), int(delay)
-            at_delay[where] = at_delay.get(where, 0.0) + float(value)
+        at_delay = processing.by_degree_and_delay(functions, np.where(counted, c, 0.0))
         return totals, threshold, at_delay
 
     def _penalty(self, readouts: np.ndarray, targets: np.ndarray) -> float:
@@ -227,18 +223,6 @@ def _targets(scaled: np.ndarray, horizon: int, chosen: CardOptions) -> tuple[dic
         except ValueError as error:
             refused.append(str(error))
     return targets, refused
-
-
-def _different(moved: np.ndarray) -> list[int]:
-    """The numbers of the signals (T, p) that move and are no copies of one before: a copy tells
-    nothing, and would halve the penalty on what it copies."""
-    first: dict[bytes, int] = {}
-    for number, column in enumerate(moved.T):
-        if np.ptp(column) > 0:
-            first.setdefault(column.tobytes(), number)
-    if not first:
-        raise ValueError("no marker moves in the training part; give a recording of a body")
-    return sorted(first.values())
 
 
 def _remembered(u, x, fitted: slice, chosen: CardOptions, horizon: int) -> int:
@@ -280,5 +264,4 @@ _ERRORS = {
 
 def _interval(quantity: tuple) -> tuple[float, float, float]:
     value, draws = quantity
-    ends = (np.nan, np.nan) if draws is None else np.percentile(draws, INTERVAL)
-    return float(value), *map(float, ends)
+    return float(value), *interval(draws)

@@ -11,17 +11,17 @@ chance, so that up to q/T of a capacity is lost, of q functions on T rows.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import comb
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from scipy.linalg import solve_triangular
+from scipy.linalg import blas, solve_triangular
 
 from fiberweb.scoring.blocks import block_sums
-from fiberweb.scoring.regression import estimated
+from fiberweb.scoring.regression import estimated, solve_ridge, standardise
 
 DEGREES = (1, 2, 3)
 MOST = 450  # functions ...
@@ -54,7 +54,7 @@ def apart(u: np.ndarray, longest: int) -> int:
 
 
 def basis(u: np.ndarray, fitted: slice, longest: int) -> Basis:
-    """The functions that a recording is long enough for.
+    """The functions of the score card: those of `DEGREES` that a recording is long enough for.
 
     Args:
         u: (T,) input, scaled to [-1, 1].
@@ -62,30 +62,42 @@ def basis(u: np.ndarray, fitted: slice, longest: int) -> Basis:
         longest: delay, frames.
     """
     step = apart(u[fitted], longest)
-    allowed = min(MOST, (fitted.stop - fitted.start) // ROWS_EACH) // len(DEGREES)
-    powers = legvander(u, max(DEGREES))
-    columns, degrees, delays = [], [], []
-    for degree in DEGREES:
-        for term in _terms(degree, longest // step, allowed):
+    allowed = min(MOST, _rows(fitted) // ROWS_EACH) // len(DEGREES)
+    return products(u, fitted, step, {d: _reach(d, longest // step, allowed) for d in DEGREES})
+
+
+def products(u: np.ndarray, fitted: slice, step: int, delays: Mapping[int, int]) -> Basis:
+    """All products of Legendre polynomials of delayed inputs, made orthogonal.
+
+    Args:
+        u: (T,) input, scaled to [-1, 1].
+        fitted: training rows, more than functions; they begin as late as the longest delay.
+        step: frames from one delay to the next.
+        delays: of each degree, in rising order, the longest delay in steps.
+    """
+    powers = legvander(u, max(delays))
+    columns, degrees, longest = [], [], []
+    for degree, reach in delays.items():
+        for term in _terms(degree, reach):
             product = np.ones(len(u))
             for delay, power in term:
                 product[delay * step :] *= powers[: len(u) - delay * step, power]
             columns.append(product)
             degrees.append(degree)
-            delays.append(step * max(delay for delay, _ in term))
+            longest.append(step * max(delay for delay, _ in term))
     values = np.stack(columns, axis=1)
     values -= values[fitted].mean(axis=0)
     norms = np.sqrt((values[fitted] ** 2).mean(axis=0))
     kept = norms > NEW * NEW  # of a binary input, a square is always the same
     values[:, kept] /= norms[kept]
     values, kept = _orthogonal(values[:, kept], fitted, np.flatnonzero(kept))
-    return Basis(values, np.array(degrees)[kept], np.array(delays)[kept])
+    return Basis(values, np.array(degrees)[kept], np.array(longest)[kept])
 
 
 def _orthogonal(values: np.ndarray, fitted: slice, numbers: np.ndarray):
     """Functions (T, q) made orthogonal on the training rows, and the numbers of those that say
     something new."""
-    rows = fitted.stop - fitted.start
+    rows = _rows(fitted)
     corner = np.linalg.qr(values[fitted], mode="r")
     new = np.abs(np.diag(corner)) > NEW * np.sqrt(rows)
     values = np.ascontiguousarray(values[:, new])
@@ -114,14 +126,37 @@ def processing(
     estimate = estimated(readouts, z, fitted, alpha, tested)
     part = np.ones_like(estimate, dtype=bool)
     sums = block_sums(z[tested], estimate, part, block)
-    random = np.random.default_rng(0)
-    highest, spread = 0.0, ((z[tested] - z[tested].mean(axis=0)) ** 2).sum(axis=0)
+    return sums, _threshold(readouts, z, fitted, alpha, block)
+
+
+def _threshold(readouts, z, fitted: slice, alpha: float, block: int) -> float:
+    """The largest capacity that chance gives, see `processing`.
+
+    Each surrogate is a fit of its own, with the scale, mean and penalty of its own training rows.
+    But all share the rows from the first training row on, so the Gram matrix of these is made once,
+    and from it that of the surrogate's test rows is taken, which are the fewer.
+    """
+    x, start, rows = standardise(readouts, fitted)[fitted.start :], fitted.start, _rows(fitted)
+    whole, added = blas.dsyrk(1.0, x.T, lower=1), x.sum(axis=0)
+    mean_z, unseen = z[fitted].mean(axis=0), z[fitted.stop :]
+    spread = ((unseen - unseen.mean(axis=0)) ** 2).sum(axis=0)
+    random, paired, highest = np.random.default_rng(0), np.zeros((len(x), z.shape[1])), 0.0
     for _ in range(SURROGATES):
-        order = _in_blocks(fitted.start, len(readouts), block, random)
-        guess = estimated(readouts[order], z, fitted, alpha, tested)
-        error = ((guess - z[tested]) ** 2).sum(axis=0)
+        order = _in_blocks(start, len(readouts), block, random)[start:] - start
+        left = x[order[rows:]]
+        mean = (added - left.sum(axis=0)) / rows
+        gram = blas.dsyrk(-1.0, left.T, beta=1.0, c=whole, lower=1)
+        gram = blas.dsyr(-rows, mean, a=gram, lower=1, overwrite_a=1)
+        scale = np.sqrt(np.maximum(np.diag(gram) / rows, 0.0))
+        # what moves in the test rows alone leaves the round-off of the difference here
+        scale[scale**2 <= len(x) * np.finfo(float).eps * np.diag(whole) / rows] = np.inf
+        gram /= scale[:, None] * scale
+        paired[order[:rows]], paired[order[rows:]] = z[fitted] - mean_z, 0.0
+        weights = solve_ridge(gram, (x.T @ paired) / scale[:, None], alpha) / scale[:, None]
+        guess = left @ weights + (mean_z - mean @ weights)
+        error = ((guess - unseen) ** 2).sum(axis=0)
         highest = max(highest, 1.0 - (error / spread).min())
-    return sums, highest
+    return highest
 
 
 def total(c: np.ndarray, counted: np.ndarray) -> np.ndarray:
@@ -129,15 +164,33 @@ def total(c: np.ndarray, counted: np.ndarray) -> np.ndarray:
     return np.where(counted, c, 0.0).sum(axis=-1)
 
 
-def _terms(degree: int, longest: int, allowed: int) -> Iterator[tuple[tuple[int, int], ...]]:
-    """Products of a degree as ((delay, power), ...), over as many delays as are allowed, those of
-    short delay first."""
-    delays = 0
-    while delays < longest and comb(delays + 1 + degree, degree) <= allowed:
-        delays += 1
-    chosen = combinations_with_replacement(range(delays + 1), degree)
+def by_degree_and_delay(functions: Basis, c: np.ndarray) -> dict[tuple[int, int], float]:
+    """Capacities (q,) of the functions added up by (degree, longest delay in frames)."""
+    found: dict[tuple[int, int], float] = {}
+    for degree, delay, value in zip(functions.degree, functions.delay, c, strict=True):
+        where = int(degree), int(delay)
+        found[where] = found.get(where, 0.0) + float(value)
+    return found
+
+
+def _reach(degree: int, longest: int, allowed: int) -> int:
+    """Steps of delay, at most `longest`, of which a degree has no more than the functions allowed;
+    at least 0."""
+    reach = 0
+    while reach < longest and comb(reach + 1 + degree, degree) <= allowed:
+        reach += 1
+    return reach
+
+
+def _terms(degree: int, longest: int) -> Iterator[tuple[tuple[int, int], ...]]:
+    """Products of a degree as ((delay, power), ...), short delays first; delays in steps."""
+    chosen = combinations_with_replacement(range(longest + 1), degree)
     for term in sorted(chosen, key=lambda term: (max(term), term)):
         yield tuple((delay, term.count(delay)) for delay in sorted(set(term)))
+
+
+def _rows(part: slice) -> int:
+    return part.stop - part.start
 
 
 def _in_blocks(start: int, frames: int, block: int, random) -> np.ndarray:

@@ -28,20 +28,17 @@ def ranks(readouts: np.ndarray, u: np.ndarray, fitted: slice, memory: int, step:
         step: frames after which the input is another one.
 
     Returns:
-        ``n_signals``: p; ``rank``: of the standardised readouts, to round-off; ``effective_rank``:
-        exp of the entropy of the shares that the principal components have of the variance, the
-        readouts as they are (`selection.effective_rank` standardises them first);
+        ``n_signals``: p; ``rank``: of the standardised readouts, to round-off;
+        ``effective_rank``: see there;
         ``kernel_rank`` and ``generalisation_rank``: see above, NaN of a recording too short for
         them, which has fewer than 2 p moments a step apart.
     """
-    x = readouts[fitted] - readouts[fitted].mean(axis=0)
-    share = np.linalg.svd(x / max(np.abs(x).max(), 1e-300), compute_uv=False) ** 2
-    share = share[share > 0] / max(share.sum(), 1e-300)
     x = standardise(readouts, fitted)[fitted]
+    values = np.linalg.svd(x, compute_uv=False)
     found = {
         "n_signals": readouts.shape[1],
-        "rank": int(np.linalg.matrix_rank(x)),
-        "effective_rank": float(np.exp(-(share * np.log(share)).sum())),
+        "rank": int((values > values[0] * max(x.shape) * np.finfo(float).eps).sum()),
+        "effective_rank": _equal(values),
     }
     moments = np.arange(0, len(x), step)
     count = x.shape[1]
@@ -60,3 +57,38 @@ def ranks(readouts: np.ndarray, u: np.ndarray, fitted: slice, memory: int, step:
         "kernel_rank": int((different > limit).sum()),
         "generalisation_rank": int((same > limit).sum()),
     }
+
+
+def effective_rank(readouts: np.ndarray) -> float:
+    """Effective rank of signals (T, p) after each is standardised; from 1 to p.
+
+    exp(-sum q log q) with q the singular values over their sum: the number of equal singular
+    values of the same entropy (Roy & Vetterli, Proc. EUSIPCO 2007, Eqs. 2-3). Standardised, because
+    that is what the readout is given. Signals that stand still count for nothing. ValueError if all
+    do.
+    """
+    centred = readouts - readouts.mean(axis=0)
+    deviation = centred.std(axis=0)
+    if not deviation.any():
+        raise ValueError("no signal moves; an effective rank needs at least one that does")
+    return _equal(
+        np.linalg.svd(centred[:, deviation > 0] / deviation[deviation > 0], compute_uv=False)
+    )
+
+
+def _equal(values: np.ndarray) -> float:
+    """How many equal singular values have the entropy of these."""
+    share = values[values > 0] / values.sum()
+    return float(np.exp(-np.sum(share * np.log(share))))
+
+
+def different(moved: np.ndarray) -> list[int]:
+    """The numbers of the signals (T, p) that move and are no copies of one before: a copy tells
+    nothing, and would halve the penalty on what it copies. ValueError if none moves."""
+    first: dict[bytes, int] = {}
+    for number, column in enumerate(moved.T):
+        if np.ptp(column) > 0:
+            first.setdefault(column.tobytes(), number)
+    if not first:
+        raise ValueError("no marker moves in the training part; give a recording of a body")
+    return sorted(first.values())

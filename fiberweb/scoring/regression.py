@@ -278,16 +278,22 @@ def solve_windows(x, cross, starts, ends, alpha) -> tuple[np.ndarray, np.ndarray
         mean = total / (end - start)
         np.add(gram, change, out=system)
         system = blas.dsyr(start - end, mean, a=system, lower=1, overwrite_a=1)
-        np.einsum("ii->i", system)[:] += alpha
-        try:
-            factor = cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
-        except LinAlgError:
-            raise ValueError(
-                f"alpha = {alpha:g} is lost in the round-off of these readouts; give a larger one"
-            ) from None
-        weights[:, same] = cho_solve(factor, cross[:, same], check_finite=False)
+        weights[:, same] = solve_ridge(system, cross[:, same], alpha)
         offset[same] = mean @ weights[:, same]
     return weights, offset
+
+
+def solve_ridge(system: np.ndarray, cross: np.ndarray, alpha: float) -> np.ndarray:
+    """Ridge weights (p, q) from a Gram matrix (p, p), of which the lower half is read and all is
+    overwritten, and from cross products (p, q)."""
+    np.einsum("ii->i", system)[:] += alpha
+    try:
+        factor = cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
+    except LinAlgError:
+        raise ValueError(
+            f"alpha = {alpha:g} is lost in the round-off of these readouts; give a larger one"
+        ) from None
+    return cho_solve(factor, cross, check_finite=False)
 
 
 def mean_of(values: np.ndarray, part: np.ndarray) -> np.ndarray:

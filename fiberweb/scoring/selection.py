@@ -1,5 +1,4 @@
-"""How redundant signals are, and how few of them keep the capacity: effective rank, and forward
-selection."""
+"""How few signals keep the capacity: forward selection."""
 
 from __future__ import annotations
 
@@ -7,7 +6,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import svdvals
 
 from fiberweb.scoring.limits import ALPHA
 from fiberweb.scoring.regression import (
@@ -35,22 +33,6 @@ class Selection:
     c_m: np.ndarray
     c_nl_train: np.ndarray
     c_m_train: np.ndarray
-
-
-def effective_rank(readouts: np.ndarray) -> float:
-    """Effective rank of signals (T, p) after each is standardised; from 1 to p.
-
-    exp(-sum q log q) with q the singular values over their sum: the number of equal singular
-    values of the same entropy (Roy & Vetterli, Proc. EUSIPCO 2007, Eqs. 2-3). Signals that stand
-    still count for nothing. ValueError if all do.
-    """
-    centred = readouts - readouts.mean(axis=0)
-    deviation = centred.std(axis=0)
-    if not deviation.any():
-        raise ValueError("no signal moves; an effective rank needs at least one that does")
-    values = svdvals(centred[:, deviation > 0] / deviation[deviation > 0])
-    share = values[values > 0] / values.sum()
-    return float(np.exp(-np.sum(share * np.log(share))))
 
 
 def forward(

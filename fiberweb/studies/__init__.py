@@ -13,6 +13,7 @@ STUDIES = (
     "size",
     "pretension",
     "features",
+    "spectrum",
     "capacity_origin",
     "memory_origin",
     "calibration",

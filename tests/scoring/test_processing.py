@@ -5,6 +5,7 @@ import pytest
 
 from fiberweb.scoring import esn, processing, rank
 from fiberweb.scoring.blocks import capacity_of
+from fiberweb.scoring.regression import estimated
 
 HORIZON = 10  # frames
 
@@ -42,6 +43,25 @@ def test_powers_have_one_of_each_degree(u):
         mixed = len(c) / 1117  # functions a training row, see the module
         assert 1.0 - mixed < processing.total(c, mine) <= 1.0
     assert (functions.delay[counted] == 0).all()
+
+
+@pytest.mark.parametrize("still", [False, True])
+def test_the_threshold_is_that_of_fits_from_scratch(u, still):
+    x = np.hstack([esn.states(u, 12), u[:, None] ** 2])
+    if still:
+        x[:700, 3] = x[710:, 3] = 0.2  # in some surrogates it moves in the test rows alone
+    fitted, alpha = slice(HORIZON, 1127), 0.01
+    functions = processing.basis(u, fitted, HORIZON)
+    _, threshold = processing.processing(x, functions, fitted, alpha, HORIZON)
+    random, z = np.random.default_rng(0), functions.values
+    highest = 0.0
+    for _ in range(processing.SURROGATES):
+        order = processing._in_blocks(HORIZON, len(x), HORIZON, random)
+        guess = estimated(x[order], z, fitted, alpha, slice(fitted.stop, None))
+        rest = z[fitted.stop :]
+        error = ((guess - rest) ** 2).sum(axis=0) / ((rest - rest.mean(axis=0)) ** 2).sum(axis=0)
+        highest = max(highest, 1.0 - error.min())
+    assert threshold == pytest.approx(highest, rel=1e-10)
 
 
 def test_of_a_product_of_two_inputs_only_their_product_is_found(u):
@@ -101,3 +121,27 @@ def test_ranks_tell_inputs_apart_and_not_noise(u):
 def test_a_recording_too_short_for_ranks_has_none(u):
     ranks = rank.ranks(taps(u, 6)[:30], u[:30], slice(10, 20), 5, 1)
     assert np.isnan(ranks["kernel_rank"]) and ranks["n_signals"] == 6
+
+
+def test_effective_rank_counts_equal_directions_and_not_copies():
+    waves = np.linalg.qr(np.random.default_rng(1).normal(size=(200, 4)))[0]
+    waves -= waves.mean(axis=0)
+    waves = np.linalg.qr(waves)[0]
+    assert rank.effective_rank(waves) == pytest.approx(4)
+    assert rank.effective_rank(waves * [1, 1e3, 1e-3, 7] + 5) == pytest.approx(4)
+    assert rank.effective_rank(np.repeat(waves[:, :1], 3, axis=1)) == pytest.approx(1)
+    still = np.column_stack([waves[:, :2], np.zeros(200)])
+    assert rank.effective_rank(still) == pytest.approx(2)
+
+
+def test_effective_rank_of_two_correlated_signals_is_the_formula():
+    a, b = np.linalg.qr(np.column_stack([np.ones(100), np.eye(100)[:, :2]]))[0][:, 1:].T
+    share = np.sqrt([1.6, 0.4]) / np.sqrt([1.6, 0.4]).sum()  # correlation 0.6
+    expected = np.exp(-(share * np.log(share)).sum())
+    found = rank.effective_rank(np.column_stack([a, 0.6 * a + 0.8 * b]))
+    assert found == pytest.approx(expected)
+
+
+def test_effective_rank_of_nothing_is_refused():
+    with pytest.raises(ValueError, match="no signal moves"):
+        rank.effective_rank(np.ones((10, 2)))

@@ -1,4 +1,4 @@
-"""Effective rank on matrices of known rank; forward selection against fits from scratch."""
+"""Forward selection against fits from scratch."""
 
 import numpy as np
 import pytest
@@ -18,30 +18,6 @@ def run():
     return u, np.column_stack(readouts) + 1e-3 * random.normal(size=(len(u), 1)) * (
         np.arange(10) < 9
     )
-
-
-def test_effective_rank_counts_equal_directions_and_not_copies():
-    waves = np.linalg.qr(np.random.default_rng(1).normal(size=(200, 4)))[0]
-    waves -= waves.mean(axis=0)
-    waves = np.linalg.qr(waves)[0]
-    assert selection.effective_rank(waves) == pytest.approx(4)
-    assert selection.effective_rank(waves * [1, 1e3, 1e-3, 7] + 5) == pytest.approx(4)
-    assert selection.effective_rank(np.repeat(waves[:, :1], 3, axis=1)) == pytest.approx(1)
-    still = np.column_stack([waves[:, :2], np.zeros(200)])
-    assert selection.effective_rank(still) == pytest.approx(2)
-
-
-def test_effective_rank_of_two_correlated_signals_is_the_formula():
-    a, b = np.linalg.qr(np.column_stack([np.ones(100), np.eye(100)[:, :2]]))[0][:, 1:].T
-    share = np.sqrt([1.6, 0.4]) / np.sqrt([1.6, 0.4]).sum()  # correlation 0.6
-    expected = np.exp(-(share * np.log(share)).sum())
-    rank = selection.effective_rank(np.column_stack([a, 0.6 * a + 0.8 * b]))
-    assert rank == pytest.approx(expected)
-
-
-def test_effective_rank_of_nothing_is_refused():
-    with pytest.raises(ValueError, match="no signal moves"):
-        selection.effective_rank(np.ones((10, 2)))
 
 
 @pytest.mark.parametrize("target", ["c_nl", "c_m"])

@@ -10,7 +10,7 @@ import pandas as pd
 
 from fiberweb.model.readouts import of_signals
 from fiberweb.model.scene import Scene
-from fiberweb.scoring import capacity, groups, recording, selection, tables
+from fiberweb.scoring import capacity, groups, rank, recording, selection, tables
 from fiberweb.simulation import dataset
 
 CHRONOLOGICAL, SHUFFLED = "chronological", "shuffled"
@@ -42,7 +42,7 @@ def group_table(
         The columns of `tables.study` and `GROUP_COLUMNS`. split "chronological" is scored as the
         run's setup scores; "shuffled" as the authors scored this study: published scoring, C_nl
         on a random split (which flatters it), C_m on a chronological one. effective_rank: see
-        `selection.effective_rank`. Capacities and rank are NaN for an unstable run.
+        `rank.effective_rank`. Capacities and rank are NaN for an unstable run.
     """
     records = []
     for scored, response_path, choice in zip(capacity_paths, response_paths, choices, strict=True):
@@ -93,10 +93,10 @@ def _groups(response, alpha: float) -> list[dict]:
     rows = []
     for group in groups.names(network):
         some = moved[:, groups.mask(group, network, response)]
-        rank = selection.effective_rank(some) if stable else math.nan
+        directions = rank.effective_rank(some) if stable else math.nan
         for split, how in splits.items():
             row = {"group": group, "split": split, "scoring": how["scoring"]}
-            row |= {"n_signals": some.shape[1], "effective_rank": rank}
+            row |= {"n_signals": some.shape[1], "effective_rank": directions}
             if stable:
                 scored = capacity.score_arrays(u, some, rate, alpha=alpha, **how)
                 row |= {name: getattr(scored, name) for name in tables.SCALARS}
