@@ -175,7 +175,7 @@ def test_the_figure_stacks_the_total_by_degree_and_by_delay(tmp_path):
     assert_written(tmp_path / "spectrum.png")
     assert_legible(figure)
     totals = given["spectrum"].groupby("run")["ipc"].first()
-    by_degree, by_delay, forced = figure.axes[:3]
+    by_degree, by_delay, against, forced = figure.axes[:4]
     for ax in (by_degree, by_delay):
         tops = {at: 0.0 for at in range(7)}
         for bar in ax.patches:
@@ -184,6 +184,8 @@ def test_the_figure_stacks_the_total_by_degree_and_by_delay(tmp_path):
         sizes = totals[["eq3-0.2", "eq3-0.3", "eq3-0.4"]]
         np.testing.assert_allclose([*tops.values()], [*sizes, *[sizes.iloc[0]] * 4])
     assert [list(mark.get_xdata()) for mark in marked(forced)] == [[2]]
-    assert "2×2\n60" in said(figure) and "Longest delay (ms)" in said(figure)
+    np.testing.assert_allclose(against.lines[0].get_ydata(), [60, 120, 180])
+    np.testing.assert_allclose(against.lines[3].get_ydata(), sizes)
+    assert "Longest delay (ms)" in said(figure) and "signals (the bound)" in said(figure)
     with pytest.raises(ValueError, match="no run of the published setup"):
         plotting.draw(given, "published", tmp_path / "none.png")
