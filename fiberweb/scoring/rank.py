@@ -67,13 +67,10 @@ def effective_rank(readouts: np.ndarray) -> float:
     that is what the readout is given. Signals that stand still count for nothing. ValueError if all
     do.
     """
-    centred = readouts - readouts.mean(axis=0)
-    deviation = centred.std(axis=0)
-    if not deviation.any():
+    x = standardise(readouts, slice(None))
+    if not x.any():
         raise ValueError("no signal moves; an effective rank needs at least one that does")
-    return _equal(
-        np.linalg.svd(centred[:, deviation > 0] / deviation[deviation > 0], compute_uv=False)
-    )
+    return _equal(np.linalg.svd(x, compute_uv=False))
 
 
 def _equal(values: np.ndarray) -> float:

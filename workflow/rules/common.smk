@@ -109,7 +109,6 @@ FIGURES = studies.makers("FIGURES")
 try:
     for path in workflow.configfiles:
         check_keys(path)  # Snakemake read them, and kept the last of two
-    check_call(sys.argv)
     CONFIG = load(config, typed(workflow.config_settings.config))
     RESULTS = CONFIG.results
     RUNS = run_table(CONFIG)
@@ -117,6 +116,7 @@ try:
     RECORDED = recorded(CONFIG.recordings)
     CUT_SHORT = {}
     if workflow.is_main_process:  # a job on a cluster need not check again
+        check_call(sys.argv)
         check_folders(CONFIG)
         CUT_SHORT = cut_short(RESULTS)
         check(run for run in RUNS.values() if not Path(response(run)).exists())

@@ -12,28 +12,10 @@ from fiberweb.claims.judge import CROSSHATCHES, Answer, Evidence, NotComputed, c
 from fiberweb.studies.twin import observations
 
 
-@check("E1")
-def nonlinear_capacity_rises_with_the_angle(evidence: Evidence) -> Answer:
-    """`observations.nonlinear_rises`."""
-    return _judged(evidence, observations.nonlinear_rises)
-
-
-@check("E2")
-def memory_rises_with_the_angle(evidence: Evidence) -> Answer:
-    """`observations.memory_rises`."""
-    return _judged(evidence, observations.memory_rises)
-
-
-@check("E3")
-def recall_of_half_a_second(evidence: Evidence) -> Answer:
-    """`observations.recalls_half_a_second`."""
-    return _judged(evidence, observations.recalls_half_a_second)
-
-
-@check("E4")
-def groups_keep_their_performance(evidence: Evidence) -> Answer:
-    """`observations.groups_keep`."""
-    return _judged(evidence, observations.groups_keep)
+@check("E1", "E2", "E3", "E4")
+def observation(evidence: Evidence) -> Answer:
+    """The function of that claim in `observations.OBSERVATIONS`."""
+    return _judged(evidence, observations.OBSERVATIONS[evidence.claim["id"]])
 
 
 @check("E5")
