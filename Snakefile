@@ -14,13 +14,13 @@
 import os
 import shlex
 import sys
-import time
 
 from snakemake.utils import min_version
 
 min_version("9.27")
 # Snakemake writes the interpreter's path into shell commands as it is, and it may have a blank.
-sys.executable = shlex.quote(sys.executable)
+PYTHON = sys.executable
+sys.executable = shlex.quote(PYTHON)
 
 
 # beside this file, wherever Snakemake is called from
@@ -71,6 +71,10 @@ onstart:
     # The limit on new jobs a second starts a timer at every pass of the scheduler, each of which
     # ends in another pass: a third of a core after some hundred jobs.
     workflow.scheduler.job_rate_limiter = None
+    # of few jobs it takes longer than it saves
+    if workflow.local_exec and len([*workflow.dag.needrun_jobs()]) > 8:
+        FORKS = forks.start(PYTHON, RESULTS)
+        sys.executable = forks.interpreter(PYTHON)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
 
@@ -78,5 +82,5 @@ onstart:
 onsuccess:
     for line in found_in_recordings():
         print(line)
-    print(f"Snakemake's own process took {time.process_time():.0f} s of CPU time.")
+    Path(RESULTS, "logs", "snakemake.log").write_text(timed.line() + "\n")
     print(f"Done: {made()}.")

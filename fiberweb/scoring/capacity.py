@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from fiberweb import timed
 from fiberweb.scoring import arguments, recording
 from fiberweb.scoring.blocks import block_sums, bootstrap_error, capacity_of
 from fiberweb.scoring.regression import (
@@ -201,7 +202,8 @@ def score(
         capacity = _assemble(np.arange(1, orders + 1), lags, *unknown)
     else:
         u, moved = recording.scored_input(response, scoring), recording.signals(response)
-        capacity = score_arrays(u, moved, rate, orders, scoring=scoring, **options)
+        with timed.part("solve"):
+            capacity = score_arrays(u, moved, rate, orders, scoring=scoring, **options)
     variables = {
         stem + suffix: (dims, getattr(capacity, stem + suffix), _labels(f"{what}, {part}"))
         for stem, (dims, what) in _VARIABLES.items()

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from fiberweb import timed
 from fiberweb.model.scene import Scene
 
 MOTIONS = ("displacement", "centre_line")
@@ -38,7 +39,8 @@ def save(data: xr.Dataset, path: str | Path) -> None:
         if variable.dtype.kind in "iuf" and variable.ndim
     }
     try:
-        data.to_netcdf(partial, engine="netcdf4", encoding=encoding)
+        with timed.part("write"):
+            data.to_netcdf(partial, engine="netcdf4", encoding=encoding)
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
@@ -52,7 +54,7 @@ def load(path: str | Path) -> xr.Dataset:
         ValueError: it is broken, one sentence.
     """
     try:
-        with xr.open_dataset(path, engine="netcdf4") as data:
+        with timed.part("read"), xr.open_dataset(path, engine="netcdf4") as data:
             return data.load()
     except FileNotFoundError:
         raise

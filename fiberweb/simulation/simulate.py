@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fiberweb import timed
 from fiberweb.arguments import spelt
 from fiberweb.engines import load
 from fiberweb.model.scene import Scene
@@ -58,5 +59,7 @@ def run(plan: Plan) -> xarray.Dataset:
     """The response of a planned run; see `simulate`."""
     from fiberweb.simulation.response import response  # with xarray, which a plan does not need
 
-    recording = load(plan.engine).integrate(plan.mesh, plan.numerics)
+    engine = load(plan.engine)
+    with timed.part("kernel"):
+        recording = engine.integrate(plan.mesh, plan.numerics)
     return response(plan.mesh, plan.numerics, recording)

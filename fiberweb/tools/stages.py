@@ -1,7 +1,9 @@
-"""`python -m fiberweb.tools.stages [results]`: jobs and time of each stage of the workflow.
+"""`python -m fiberweb.tools.stages [results]`: jobs and CPU time of each stage of the workflow.
 
-From the benchmark files that Snakemake leaves: one for each job, the last time that it ran.
-Stages are folders there: simulate, capacity, tables, figures, claims, accuracy.
+From the last lines of the jobs' logs: one job a log, as it last ran. Stages are folders there:
+simulate, capacity, tables, figures, claims, accuracy; `forks` is the process that jobs are forks
+of, and `snakemake` the workflow's own. Of a job, `kernel` is the integration, `solve` the ridge
+regression with its standard errors, and `rest` all that is none of the others.
 """
 
 from __future__ import annotations
@@ -11,33 +13,40 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb import timed
+
+PHYSICS = ["kernel", "solve"]
+PARTS = ["start", *PHYSICS, "read", "write", "rest"]
+
 
 def stages(results: str | Path) -> pd.DataFrame:
-    """Jobs and wall seconds of each stage, the longest first; the last row has all.
-
-    Not CPU seconds: Snakemake samples those as rarely as every 30 s, and short jobs lose half.
+    """Jobs and CPU seconds of each stage by part, the longest first; the last row has all.
 
     Raises:
-        ValueError: there is no benchmark in the folder.
+        ValueError: there is no job's log in the folder.
     """
-    folder = Path(results) / "benchmarks"
-    jobs = []
-    for path in sorted(folder.rglob("*.tsv")):
-        measured = pd.read_csv(path, sep="\t", na_values="-").iloc[-1]
-        stage = path.relative_to(folder).parts[0].removesuffix(".tsv")
-        jobs.append((stage, measured["s"]))
-    if not jobs:
-        raise ValueError(f"{folder} holds no benchmark: run the workflow first")
-    frame = pd.DataFrame(jobs, columns=["stage", "wall_s"])
-    table = frame.groupby("stage").agg(jobs=("wall_s", "size"), wall_s=("wall_s", "sum"))
-    table = table.sort_values("wall_s", ascending=False)
+    folder = Path(results) / "logs"
+    rows = []
+    for path in sorted(folder.rglob("*.log")):
+        if spent := timed.read(path.read_text(encoding="utf-8", errors="replace")):
+            stage = path.relative_to(folder).parts[0].removesuffix(".log")
+            rows.append({"stage": stage, "jobs": 1, **spent})
+    if not rows:
+        raise ValueError(f"{folder} holds no log of a job: run the workflow first")
+    table = pd.DataFrame(rows, columns=["stage", "jobs", *PARTS]).groupby("stage").sum()
+    table["all"] = table[PARTS].sum(axis=1)
+    table = table.sort_values("all", ascending=False)
     table.loc["all"] = table.sum()
     return table.astype({"jobs": int})
 
 
 def main() -> None:
-    """Print the table."""
-    print(stages(sys.argv[1] if len(sys.argv) > 1 else "results").round(1).to_string())
+    """Print the table, and how much of the time is neither kernel nor ridge solve."""
+    table = stages(sys.argv[1] if len(sys.argv) > 1 else "results")
+    print(table.round(1).to_string())
+    everything = table.loc["all"]
+    share = 1.0 - everything[PHYSICS].sum() / everything["all"]
+    print(f"neither kernel nor solve: {share:.1%} of the CPU time")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from fiberweb import studies
+from fiberweb import forks, studies, timed
 from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
 from fiberweb.errors import unknown_key
