@@ -2,8 +2,9 @@
 
 A table stands between the lines `<!-- table: NAME -->` and `<!-- end -->`. NAME is the path of a
 CSV file below results/tables without its suffix, such as `described/topology`; `TABLES` says under
-its last part which columns are shown. `claims` is made of the claims.csv of every setup at hand.
-A block whose table does not exist stays as it is, and a line says so.
+its last part which columns are shown. `claims` is made of the claims.csv of every setup at hand,
+and keeps the columns of those that are not. Another block whose table does not exist stays as it
+is, and a line says so.
 """
 
 from __future__ import annotations
@@ -70,11 +71,30 @@ def cell(row: pd.Series, what: str) -> str:
     return format(value * float(factor), spec) if spec else str(value).replace("|", "\\|")
 
 
-def claims(tables: Path) -> pd.DataFrame | None:
-    """Every claim with the value and the verdict in each setup at hand; None without any."""
+def claims(tables: Path, old: str = "") -> pd.DataFrame | None:
+    """Every claim with the value and the verdict in each setup at hand, and as the old table has
+    them in the others, which take hours each; None without any at hand."""
     paths = {setup: tables / setup / "claims.csv" for setup in SETUPS}
     given = {setup: pd.read_csv(path, dtype=str) for setup, path in paths.items() if path.exists()}
-    return join(given).drop(columns=["figure", "kind"]) if given else None
+    if not given:
+        return None
+    joined = join(given).drop(columns=["figure", "kind"]).set_index("id")
+    kept = parsed(old).reindex(index=joined.index)
+    of_setups = [name for setup in SETUPS for name in (setup, f"{setup}_verdict")]
+    columns = {**kept, **joined}
+    order = sorted(columns, key=lambda name: of_setups.index(name) if name in of_setups else -1)
+    return pd.DataFrame({name: columns[name] for name in order}).reset_index()
+
+
+def parsed(table: str) -> pd.DataFrame:
+    """A written table of claims as what it was written from; empty of an empty one."""
+    lines = [line[2:-2] for line in table.splitlines() if line.startswith("|")]
+    rows = [re.split(r"(?<!\\) \| ", line) for line in lines]
+    if not rows:
+        return pd.DataFrame()
+    names = [name.replace(" ", "_") for name in rows[0]]
+    frame = pd.DataFrame(rows[2:], columns=names).set_index("id")
+    return frame.apply(lambda cells: cells.str.replace("\\|", "|")).replace(NONE, None)
 
 
 def limits(table: pd.DataFrame) -> pd.DataFrame:
@@ -86,11 +106,11 @@ def limits(table: pd.DataFrame) -> pd.DataFrame:
     return made.reset_index()
 
 
-def read(name: str, tables: Path) -> tuple[pd.DataFrame | None, dict[str, str]]:
+def read(name: str, tables: Path, old: str = "") -> tuple[pd.DataFrame | None, dict[str, str]]:
     """The frame of a block, None if its table does not exist, and its columns as in `TABLES`."""
     last = name.rsplit("/")[-1]
     if last == "claims":
-        frame = claims(tables)
+        frame = claims(tables, old)
         return frame, {} if frame is None else {name.replace("_", " "): name for name in frame}
     kind = "baselines" if last.endswith("_baselines") else last
     if kind not in TABLES:
@@ -116,7 +136,7 @@ def rewrite(page: str, tables: Path) -> tuple[str, list[str]]:
         name, old = match.groups()
         if START in old:
             raise ValueError(f"the block of table {name!r} does not end with a line {END}")
-        frame, columns = read(name, tables)
+        frame, columns = read(name, tables, old)
         if frame is None:
             left.append(name)
             return match[0]

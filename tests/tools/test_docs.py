@@ -122,6 +122,17 @@ def test_claims_of_one_setup_alone(results):
     assert list(columns) == ["id", "statement", "paper", "described", "described verdict"]
 
 
+def test_claims_of_a_setup_that_was_not_run_again_are_kept(results):
+    both, _ = docs.rewrite(PAGE, results / "tables")
+    (results / "tables" / "described" / "claims.csv").unlink()
+    path = results / "tables" / "published" / "claims.csv"
+    path.write_text(PUBLISHED.replace("0.998", "0.997"))
+    again, _ = docs.rewrite(both, results / "tables")
+    # N5 is not among the claims any more
+    lines = WRITTEN.replace("0.998", "0.997").splitlines(keepends=True)
+    assert again == "".join(line for line in lines if not line.startswith("| N5"))
+
+
 def test_stable_steps_are_one_row_an_engine(results):
     page, left = docs.rewrite("<!-- table: stability -->\n<!-- end -->\n", results / "tables")
     assert left == []
