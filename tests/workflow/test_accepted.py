@@ -89,6 +89,10 @@ def test_every_run_of_an_accepted_config_starts(changed):
         ({"topology": {"polygon": [60]}}, "n = 60: more than 16 vertices"),
         ({"scene": {"sample_rate": 0.005}}, "sample_rate|frame"),
         ({"numerics": {"accuracy": None, "engine": "elastica"}}, "crossing_stiffness = inf"),
+        (
+            {"scene": {"youngs_modulus": 1e11}},
+            "of capacity_origin: time_step = 5e-06 s is above",
+        ),
     ],
 )
 def test_what_was_refused_only_after_others_had_run(changed, words):
