@@ -99,7 +99,8 @@ class Run:
         kind = (
             scene.setup, scene.network.topology, scene.ends, scene.layout, scene.filter_order,
             scene.tension,
-            math.isinf(scene.crossing_stiffness), json.dumps(self.numerics),
+            math.isinf(scene.crossing_stiffness), scene.loss_factor > 0, scene.stroke is None,
+            json.dumps(self.numerics),
         )  # fmt: skip
         if "time_step" in self.numerics and scene.setup != "published":
             return (*kind, replace(scene, **AT_ANY).to_json())
