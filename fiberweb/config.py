@@ -22,6 +22,7 @@ from fiberweb import studies
 from fiberweb.errors import location, sentence
 from fiberweb.folders import folder, missing_disk
 from fiberweb.layers import is_number, overlay, read
+from fiberweb.model.scene import Scene
 from fiberweb.recorded import RecordingSection
 from fiberweb.sections import (
     ExperimentSection,
@@ -29,6 +30,7 @@ from fiberweb.sections import (
     SceneSection,
     ScoringSection,
     Section,
+    SetupSection,
     SetupsSection,
     is_section,
     key,
@@ -164,7 +166,8 @@ def _explain(error: ValidationError) -> str:
         name = sentence(error).partition(" = ")[0]
         return f"{name} has to be given: {_look_up(path)[1].description}"
     if problem["type"] == "extra_forbidden":
-        return sentence(error, known=_look_up(path[:-1])[0].model_fields) + _spelling(path)
+        unknown = sentence(error, known=_look_up(path[:-1])[0].model_fields)
+        return unknown + _spelling(path) + _elsewhere(path)
     section, field = _look_up(path)
     if section is not None:
         keys = ", ".join(section.model_fields)
@@ -202,6 +205,18 @@ def _spelling(path: list[str]) -> str:
         return f"; put a blank after the colon, {last.replace(':', ': ', 1)}"
     names = [name for name in re.split(r"[.:]", last) if name]
     return f"; a key in a group is given as {_nested([*above, *names])}" if names[1:] else ""
+
+
+def _elsewhere(path: list[str]) -> str:
+    """What to say of an unknown key of the scene or a setup that is a field of every `Scene`."""
+    group, name = path[0], path[-1]
+    if group not in ("scene", "setups") or name not in Scene.__dataclass_fields__:
+        return ""
+    if name in SceneSection.model_fields:
+        return f"; it is given as {_nested(['scene', name])}"
+    if name in SetupSection.model_fields:
+        return f"; it is given as {_nested(['setups', 'described', name])}"
+    return f"; studies see to it, and the library takes it, Scene({name}=...)"
 
 
 def _nested(path: list[str]) -> str:

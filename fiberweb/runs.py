@@ -35,6 +35,7 @@ class Run:
         numerics: keyword arguments of `fiberweb.simulate` beside the scene.
         scoring: keyword arguments of `fiberweb.score` beside the response.
         choice, camera: see `fiberweb.studies.base.Point`.
+        study: the first that asks for it, whose keys are to blame for what is refused.
         name: what it is, and a hash of what tells scene and numerics from others.
     """
 
@@ -43,6 +44,7 @@ class Run:
     scoring: dict = field(hash=False)
     choice: str = ""
     camera: dict | None = field(default=None, hash=False)
+    study: str = field(default="", compare=False)
 
     @cached_property
     def request(self) -> str:
@@ -74,12 +76,12 @@ class Run:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""
         from fiberweb.simulation.plan import plan
 
-        with self._named():
+        with _named(self.name, self.study):
             plan(self.scene, **self.numerics)
 
     def check_request(self) -> None:
         """`check` as far as that needs no mesh; and whether the recording can be scored."""
-        with self._named():
+        with _named(self.name, self.study):
             request(self.scene, **self.numerics)
             check_frames(
                 self.scene.samples, self.scene.sample_rate, skip=self.scoring.get("skip", 0)
@@ -97,7 +99,8 @@ class Run:
         kind = (
             scene.setup, scene.network.topology, scene.ends, scene.layout, scene.filter_order,
             scene.tension,
-            math.isinf(scene.crossing_stiffness), json.dumps(self.numerics),
+            math.isinf(scene.crossing_stiffness), scene.loss_factor > 0, scene.stroke is None,
+            json.dumps(self.numerics),
         )  # fmt: skip
         if "time_step" in self.numerics and scene.setup != "published":
             return (*kind, replace(scene, **AT_ANY).to_json())
@@ -105,13 +108,14 @@ class Run:
             return (*kind, scene.network.n, scene.network.length)
         return kind
 
-    @contextmanager
-    def _named(self) -> Iterator[None]:
-        """Names this run in what is refused."""
-        try:
-            yield
-        except ValueError as error:
-            raise ValueError(f"{self.name}: {error}") from None
+
+@contextmanager
+def _named(run: str, study: str = "") -> Iterator[None]:
+    """Says in what is refused which run it is, and the study if it is known."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{' of '.join(filter(None, (run, study)))}: {error}") from None
 
 
 def check(table: Iterable[Run], checked: set[tuple] | None = None) -> None:
@@ -138,18 +142,24 @@ def runs(config: Config, study: str, setup: str, best: Mapping | None = None) ->
         config: the whole config.
         study, setup: names.
         best: as for `fiberweb.config.lab`; only studies that start from it look at it.
+
+    Raises:
+        ValueError: one sentence, of a scene that excludes itself.
     """
     if setup not in studies.setups(study):
         return []
     published = setup == "published"
     general = {} if published else _given(config.numerics.model_dump())
+    with _named(f"a run of {study} in the setup {setup}"):
+        points = [*studies.load(study).points(getattr(config, study), lab(config, setup, best))]
     table = {}
-    for point in studies.load(study).points(getattr(config, study), lab(config, setup, best)):
+    for point in points:
         scoring = {"alpha": config.scoring.alpha}
         if published and point.scene.network.topology == "polygon":
             scoring["skip"] = SKIPPED_FRAMES
         numerics = general if point.numerics is None else point.numerics
-        run = Run(point.scene, numerics, scoring | point.scoring, point.choice, point.camera)
+        scoring |= point.scoring
+        run = Run(point.scene, numerics, scoring, point.choice, point.camera, study)
         same_scene(table.setdefault((run.name, run.choice), run), run)
     return list(table.values())
 

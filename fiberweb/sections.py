@@ -77,6 +77,12 @@ class SceneSection(Section):
     drive_rate: Positive = scene_key(
         "drive_rate", "random knots of the input per second", "Hz", SIMULATION
     )
+    lowest_knot: Literal[-1, 0] = scene_key(
+        "lowest_knot",
+        "the knots lie between this and 1: -1 pushes to both sides, 0 to one alone",
+        "",
+        SIMULATION,
+    )
     diameter: Positive = scene_key("diameter", "diameter of the fibres", "m", SIMULATION)
     youngs_modulus: Positive = scene_key(
         "youngs_modulus", "Young's modulus E; the shear modulus is E/3", "Pa", SIMULATION
@@ -96,17 +102,35 @@ class SetupSection(Section):
     crossing_damping: NotNegative | None = key(
         None, "damper beside that spring", "N s/m", SIMULATION
     )
+    bond_stiffness: NotNegativeOrRigid = scene_key(
+        "bond_stiffness",
+        "spring that keeps the angle between fibres at a crossing: with 0 they are free to turn, "
+        "with .inf they turn as one",
+        "N m",
+    )
     damping: NotNegative | None = key(None, "rate at which velocity decays", "1/s", "")
+    loss_factor: NotNegative = scene_key(
+        "loss_factor",
+        "tan(delta) of the fibres' material, axial and in bending, at loss_frequency; it grows in "
+        "proportion to the frequency (Kelvin-Voigt)",
+    )
+    loss_frequency: Positive = scene_key(
+        "loss_frequency", "frequency at which the material has that loss factor", "Hz"
+    )
     filter_order: Annotated[int, Field(ge=0, le=6)] | None = key(
         None, "order of the Laplace filter on velocities at every step, 0 for none"
     )
     dead_band: bool | None = key(None, "bend as the authors' rotations do, with a dead band")
-    ends: Literal["clamped", "sliding", "pinned"] | None = key(
+    ends: Literal["clamped", "sliding", "pinned", "sprung"] | None = key(
         None,
         "clamped near end and free far end; pinned near end and far end that slides along the "
-        "fibre; or pinned near end and free far end",
+        "fibre; pinned near end and free far end; or as sliding, on a spring that holds the far "
+        "end at scene.tension at rest",
         "",
         NETWORK,
+    )
+    end_stiffness: Positive | None = key(
+        None, "spring along each fibre at its far end, of sprung ends alone", "N/m"
     )
     layout: Literal["exact", "authors"] | None = key(
         None,
@@ -121,6 +145,22 @@ class SetupsSection(Section):
     described: SetupSection = SetupSection(**SETUPS["described"]["crosshatch"])
     published: SetupSection = SetupSection()
     compliant: SetupSection = SetupSection(**SETUPS["compliant"]["crosshatch"])
+
+    @model_validator(mode="after")
+    def _springs_at_sprung_ends(self) -> Self:
+        for name, setup in self:
+            ends, stiffness = setup.ends, setup.end_stiffness
+            if ends == "sprung" and stiffness is None:
+                raise ValueError(
+                    f"setups.{name}.ends = 'sprung' needs the stiffness of the springs: give "
+                    f"setups.{name}.end_stiffness in N/m, or other ends"
+                )
+            if ends != "sprung" and stiffness is not None:
+                raise ValueError(
+                    f"setups.{name}.end_stiffness = {stiffness:g} N/m is of springs, which "
+                    f"setups.{name}.ends = {ends!r} has not: give ends: sprung, or leave it out"
+                )
+        return self
 
 
 class NumericsSection(Section):

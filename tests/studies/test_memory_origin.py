@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from matplotlib.axes import Axes
 
-from fiberweb.config import Config
+from fiberweb.config import Config, load
 from fiberweb.runs import runs
 from fiberweb.studies.memory_origin import figure as plotting
 from tests.figures.legible import BASELINES, assert_legible, assert_written, marked, said
@@ -86,6 +86,17 @@ def test_no_series_of_the_papers_config_is_empty(unsaved, setup):
     for ax in (nonlinear, memory):
         assert len(ax.containers) == (6 if setup == "compliant" else 2)
         assert all(set(bar[0].get_xdata()) == {2, 4, 8} for bar in ax.containers)
+
+
+def test_the_loss_of_a_config_is_not_added_to_other_carriers():
+    own = {"loss_factor": 0.3, "loss_frequency": 50.0}
+    lossy = load({"setups": {"compliant": own, "published": own}})
+    for setup in ("compliant", "published"):
+        names, plain = (
+            [each.name for each in runs(config, "memory_origin", setup)]
+            for config in (lossy, load())
+        )
+        assert names == plain
 
 
 def test_the_published_setup_compares_filter_on_and_off(origin, unsaved):

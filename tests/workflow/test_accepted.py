@@ -1,5 +1,6 @@
 """What a dry run accepts, runs through: every run of an accepted config starts."""
 
+import math
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from pydantic import BaseModel
 
 from fiberweb import Scene, crosshatch
 from fiberweb.config import Config, load
+from fiberweb.model.scene import SETUPS
 from fiberweb.runs import Run, check, run_table
 
 SMOKE = [Path(__file__).parents[2] / "config" / name for name in ("config.yaml", "smoke.yaml")]
@@ -38,10 +40,20 @@ def near(value) -> st.SearchStrategy:
     if isinstance(value, (int, float)):
         factors = NUMBERS[float].map(lambda factor: type(value)(factor * value))
         return st.one_of(NUMBERS[type(value)], factors)
-    return st.sampled_from([None, "draft", "fine", "clamped", "sliding", "pinned"])
+    return st.sampled_from([None, "draft", "fine", "clamped", "sliding", "pinned", "sprung"])
 
 
 LEAVES = dict(leaves(Config, BASE))
+# what a body of one's own has beside the paper's, the springs with their stiffness
+SPRINGS = st.fixed_dictionaries(
+    {"ends": st.just("sprung"), "end_stiffness": st.sampled_from([1e-3, 50.0, 1e6])}
+)
+LOSS = st.fixed_dictionaries(
+    {"loss_factor": st.sampled_from([1e-3, 0.1, 10.0])},
+    optional={"loss_frequency": st.sampled_from([0.1, 300.0])},
+)
+BONDS = st.fixed_dictionaries({"bond_stiffness": st.sampled_from([1e-6, 0.1, math.inf])})
+BODY = st.lists(SPRINGS | LOSS | BONDS, max_size=3)
 
 
 @st.composite
@@ -53,6 +65,9 @@ def changes(draw) -> dict:
         for name in path[:-1]:
             section = section.setdefault(name, {})
         section[path[-1]] = draw(near(LEAVES[path]))
+    for part in draw(BODY):
+        setup = draw(st.sampled_from([*SETUPS]))
+        changed.setdefault("setups", {}).setdefault(setup, {}).update(part)
     return changed
 
 
@@ -89,6 +104,21 @@ def test_every_run_of_an_accepted_config_starts(changed):
         ({"topology": {"polygon": [60]}}, "n = 60: more than 16 vertices"),
         ({"scene": {"sample_rate": 0.005}}, "sample_rate|frame"),
         ({"numerics": {"accuracy": None, "engine": "elastica"}}, "crossing_stiffness = inf"),
+        (
+            {"setups": {"published": {"bond_stiffness": 1.0}}},
+            "topology in the setup published: bond_stiffness = 1: layout = 'authors' of a polygon",
+        ),
+        (
+            {
+                "numerics": {"accuracy": None, "engine": "elastica"},
+                "setups": {"described": {"crossing_stiffness": 1e3, "loss_factor": 0.1}},
+            },
+            "loss_factor = 0.1: PyElastica has no material damping; use engine = 'kirchhoff'",
+        ),
+        (
+            {"scene": {"youngs_modulus": 1e11}},
+            "of capacity_origin: time_step = 5e-06 s is above",
+        ),
     ],
 )
 def test_what_was_refused_only_after_others_had_run(changed, words):

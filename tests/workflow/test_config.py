@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import fields
 from itertools import product
 from pathlib import Path
 
@@ -13,9 +14,10 @@ import pytest
 from fiberweb import studies
 from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
+from fiberweb.model.scene import Scene
 from fiberweb.runs import DIGITS, Run, check, run_table, runs
 from fiberweb.scoring import capacity
-from fiberweb.sections import NumericsSection
+from fiberweb.sections import NumericsSection, SceneSection, SetupSection
 from fiberweb.simulation.plan import ACCURACIES
 from fiberweb.studies.base import CHOICES, HORIZON
 from fiberweb.studies.topology import example
@@ -89,6 +91,44 @@ BAD = {
         {"size": {"published_duration": 1.0}}, ["size.published_duration", "1 s", "2 s"],
     ),
     "no such order": ({"narma": {"order": [3]}}, ["narma.order.0", "= 3", "2, 5 or 10"]),
+    "springs without stiffness": (
+        {"setups": {"compliant": {"ends": "sprung"}}},
+        ["setups.compliant.ends = 'sprung'", "give setups.compliant.end_stiffness in N/m"],
+    ),
+    "stiffness without springs": (
+        {"setups": {"described": {"end_stiffness": 50.0}}},
+        ["setups.described.end_stiffness = 50 N/m", "ends = 'sliding'", "ends: sprung"],
+    ),
+    "springs of no stiffness": (
+        {"setups": {"described": {"ends": "sprung", "end_stiffness": 0.0}}},
+        ["setups.described.end_stiffness = 0.0", "greater than 0", "N/m)"],
+    ),
+    "negative bond": (
+        {"setups": {"described": {"bond_stiffness": -1.0}}},
+        ["setups.described.bond_stiffness = -1.0", "equal to 0", "N m)"],
+    ),
+    "a gain": (
+        {"setups": {"described": {"loss_factor": -0.1}}},
+        ["setups.described.loss_factor = -0.1", "equal to 0"],
+    ),
+    "loss at rest": (
+        {"setups": {"described": {"loss_frequency": 0.0}}},
+        ["setups.described.loss_frequency = 0.0", "greater than 0", "Hz)"],
+    ),
+    "knots too high": ({"scene": {"lowest_knot": 1}}, ["scene.lowest_knot = 1", "-1 or 0"]),
+    "diameters by fibre": (
+        {"scene": {"diameter": [1e-3, 2e-3]}}, ["scene.diameter = [0.001", "number", "m)"],
+    ),
+    "a stroke": (
+        {"scene": {"stroke": 0.02}}, ["'scene.stroke'", "studies see to it", "Scene(stroke=...)"],
+    ),
+    "a setup's key of the scene": (
+        {"scene": {"ends": "sprung"}}, ["'scene.ends'", "setups: {described: {ends: ...}}"],
+    ),
+    "the scene's key of a setup": (
+        {"setups": {"described": {"density": 1e3}}},
+        ["'setups.described.density'", "scene: {density: ...}"],
+    ),
     "not a number": ({"scene": {"density": float("nan")}}, ["scene.density", "nan", "finite"]),
 }  # fmt: skip
 
@@ -377,6 +417,32 @@ def test_setups_differ_as_the_config_says():
     assert (published.damping, published.network.diagonals) == (10.0, "skip-one")
     assert (compliant.damping, compliant.network.diagonals) == (2.5, "all")
     assert runs(config, "topology", "published")[-1].scoring["skip"] == 300
+
+
+def test_a_config_has_every_field_of_a_scene_that_studies_do_not_see_to():
+    """Studies choose a force each, so that none can be given a stroke instead."""
+    of_studies = {"network", "setup", "force", "stroke", "lever", "disturbance", "centre_lines"}
+    keys = [*SceneSection.model_fields, *SetupSection.model_fields]
+    assert len(keys) == len(set(keys))
+    assert {field.name for field in fields(Scene)} - of_studies == set(keys)
+
+
+@pytest.mark.parametrize("setup", SETUPS)
+def test_springs_bonds_and_loss_of_a_setup_reach_its_scenes(setup):
+    own = {
+        "bond_stiffness": 0.1, "loss_factor": 0.05, "loss_frequency": 50.0, "ends": "sprung",
+        "end_stiffness": 52.5,
+    }  # fmt: skip
+    config = load({"setups": {setup: own}, "topology": {"polygon": []}})
+    for other in SETUPS:
+        for run in runs(config, "topology", other):
+            found = {name: getattr(run.scene, name) for name in own}
+            assert found == own if other == setup else not (set(found.items()) & set(own.items()))
+
+
+def test_an_input_of_one_sign_reaches_every_scene():
+    config = load({"scene": {"lowest_knot": 0}})
+    assert {run.scene.lowest_knot for run in run_table(config).values()} == {0}
 
 
 def test_studies_share_a_scene_they_both_ask_for():

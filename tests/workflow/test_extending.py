@@ -8,7 +8,12 @@ import matplotlib.image
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 
+from fiberweb import score, simulate
+from fiberweb.config import load
+from fiberweb.layers import overlay
+from fiberweb.runs import check, run_table, runs
 from tests.workflow.conftest import ROOT
 
 PAGE = (ROOT / "docs" / "extending.md").read_text()
@@ -57,6 +62,25 @@ def test_the_study_of_the_page(smoked, edited):
     assert np.ptp(mpl.image.imread(out / "figures" / "stiffness.png")) > 0.5
     assert tree.planned("stiffness", *small) == {}
     shutil.rmtree(tree.folder / "fiberweb" / "studies" / "stiffness")
+
+
+def test_the_body_of_the_page_is_one_and_runs():
+    page = section("A body of another kind")
+    blocks = [re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("yaml", "python")]
+    ((keys,), (code,)) = blocks
+    values, names = yaml.safe_load(keys), {}
+    exec(code.split("capacity = ")[0], names)
+    config = load(ROOT / "config" / "config.yaml", values)
+    check(run_table(config).values())
+    assert runs(config, "topology", "described")[0].scene == names["scene"]
+
+    short = {"scene": {"duration": 3.0}, "topology": {"crosshatch": [2]}}
+    (run,) = runs(load(overlay(values, short)), "topology", "described")
+    response = simulate(run.scene, accuracy="draft")
+    assert response.attrs["status"] == "ok"
+    assert response.attrs["energy_residual"] < 1e-6
+    capacity = score(response)
+    assert 0.0 < float(capacity.c_nl) <= 1.0 and 0.0 < float(capacity.c_m) <= 1.0
 
 
 TITLES = ["A study", "A figure of an existing study", "An engine", "A recording format"]
