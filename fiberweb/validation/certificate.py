@@ -211,7 +211,7 @@ def _within_budget(variant: Variant, mesh: Mesh, numerics: Numerics) -> Variant:
 def _drive_and_material(scene: Scene) -> dict:
     """What a setup does not decide."""
     names = ("force", "tension", "duration", "seed", "sample_rate", "drive_rate", "diameter",
-             "youngs_modulus", "density", "tension_ramp")  # fmt: skip
+             "youngs_modulus", "density", "tension_ramp", "lowest_knot")  # fmt: skip
     return {name: getattr(scene, name) for name in names}
 
 
