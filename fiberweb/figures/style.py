@@ -8,8 +8,9 @@ the user's matplotlibrc change a figure.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 
 import matplotlib as mpl
@@ -75,6 +76,20 @@ def applied() -> Iterator[None]:
         mpl.rcdefaults()
         mpl.rcParams.update(RC)
         yield
+
+
+def drawing(draw: Callable[..., Figure]) -> Callable[..., Figure]:
+    """Makes a function that draws what it is given of a setup into one that is called with a path
+    as well: it runs in `applied`, and the figure that it returns is written, see `save`."""
+
+    @wraps(draw)
+    def drawn(given: dict, setup: str, path: str | Path, **options) -> Figure:
+        with applied():
+            figure = draw(given, setup, **options)
+            save(figure, path)
+        return figure
+
+    return drawn
 
 
 def figure(width: float, height: float) -> Figure:
