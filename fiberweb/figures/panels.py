@@ -25,7 +25,7 @@ PREDICTION = {"color": style.SEQUENTIAL(0.6), "lw": 1.6}
 def letter(ax: Axes, name: str, title: str, pad: float = 3.0) -> None:
     """Panel letter and title above the left end of an axes, `pad` points away."""
     size = style.RC["figure.titlesize"]
-    ax.set_title(rf"$\mathbf{{{name}}}$   {title}", loc="left", pad=pad, fontsize=size)
+    ax.set_title(style.lettered(name, title), loc="left", pad=pad, fontsize=size)
 
 
 def network(ax: Axes, drawn: Network, colour: str, limits: tuple[float, float]) -> None:

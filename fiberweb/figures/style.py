@@ -108,11 +108,14 @@ def colours(count: int) -> np.ndarray:
     return SEQUENTIAL(np.linspace(0.0, 0.72, count) if count > 1 else np.zeros(1))
 
 
+def lettered(name: str, title: str) -> str:
+    """A title with its panel letter before it."""
+    return rf"$\mathbf{{{name}}}$   {title}"
+
+
 def letter(part: FigureBase, name: str, title: str) -> None:
     """Panel letter and title at the upper left of a figure or subfigure."""
-    part.suptitle(
-        rf"$\mathbf{{{name}}}$   {title}", x=0.005, ha="left", fontsize=RC["figure.titlesize"]
-    )
+    part.suptitle(lettered(name, title), x=0.005, ha="left", fontsize=RC["figure.titlesize"])
 
 
 def mark_unstable(ax: Axes, places: Sequence[float]) -> None:

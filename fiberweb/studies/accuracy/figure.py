@@ -55,9 +55,8 @@ def draw_speed_accuracy(given: dict, setup: str) -> Figure:
             _points(ax, rows, column)
             ax.set(xscale="log", yscale="log", ylabel=label)
             ax.margins(0.12, 0.15)
-        axes[row, 0].set_title(
-            rf"$\mathbf{{{letter}}}$   {network.replace('x', '×')} crosshatch", loc="left"
-        )
+        title = f"{network.replace('x', '×')} crosshatch"
+        axes[row, 0].set_title(style.lettered(letter, title), loc="left")
     for ax in axes[-1]:
         ax.set_xlabel("CPU time of a 100 s run (s)")
     figure.legend(*_engine_key(axes[0, 0]), loc="outside upper center", ncols=5)
@@ -181,7 +180,7 @@ def draw_stability(given: dict, setup: str) -> Figure:
         _ratios(ax, table, engine)
         _drift(ax, drift[drift["engine"] == engine])
     for letter, ax in zip("abcdefghi", axes.flat):
-        ax.set_title(rf"$\mathbf{{{letter}}}$   {ax.get_title(loc='left')}", loc="left")
+        ax.set_title(style.lettered(letter, ax.get_title(loc="left")), loc="left")
     handles = [
         axes[0, 0].plot([], [], MARKERS[e], color=COLOUR[e], mfc="none", mew=0.8)[0]
         for e in MARKERS

@@ -30,7 +30,7 @@ def draw(given: dict, setup: str) -> Figure:
         plots.scale(ax, rows, baselines, name)
         plots.baselines(ax, baselines, name)
         title = f"{plots.TOTALS[name]} over pretension ({setup} setup)"
-        ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
+        ax.set_title(style.lettered(letter, title), loc="left")
     plots.spacing_bar(figure, axes, colour)
     handles = plots.key(rows)
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)

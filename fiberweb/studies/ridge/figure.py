@@ -43,12 +43,12 @@ def draw(given: dict, setup: str) -> Figure:
         _map(ax, ridge, onset, baselines, name)
         _bar(top, ax, baselines, name)
         title = f"{plots.TOTALS[name]} ({size}, {setup} setup)"
-        ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
+        ax.set_title(style.lettered(letter, title), loc="left")
     *axes, last = bottom.subplots(1, 3, width_ratios=[1, 1, 0.6])
     for ax, letter, name in zip(axes, "cd", plots.TOTALS):
         _over_buckling(ax, ridge, baselines, name, colour)
         title = f"{plots.TOTALS[name]} over {plots.BUCKLING}"
-        ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
+        ax.set_title(style.lettered(letter, title), loc="left")
     _onset(last, onset, colour)
     plots.spacing_bar(bottom, [*axes, last], colour)
     _key(bottom, ridge)
@@ -129,7 +129,7 @@ def _onset(ax: Axes, onset: pd.DataFrame, colour: dict) -> None:
     low, high = ax.get_ylim()
     ax.set_ylim(min(low, 0.45), max(high, 2.2))  # room for ticks about 1
     plots.logarithmic(ax.yaxis)
-    ax.set_title(rf"$\mathbf{{e}}$   Drop of {plots.TOTALS['c_nl']}", loc="left")
+    ax.set_title(style.lettered("e", f"Drop of {plots.TOTALS['c_nl']}"), loc="left")
 
 
 def _key(part: SubFigure, ridge: pd.DataFrame) -> None:

@@ -90,7 +90,7 @@ def _finish(
     for ax, name in zip(part.axes, plots.TOTALS):
         plots.scale(ax, rows, baselines, name)
         title = f"{plots.TOTALS[name]} at the best force for it ({of} setup)"
-        ax.set_title(rf"$\mathbf{{{next(letters)}}}$   {title}", loc="left")
+        ax.set_title(style.lettered(next(letters), title), loc="left")
         plots.baselines(ax, baselines, name)
     handles = handles | plots.key(rows)
     part.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)
