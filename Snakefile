@@ -44,17 +44,17 @@ include: "workflow/rules/recordings.smk"
 rule figures:
     default_target: True
     input:
-        products("described"),
+        FILES.products("described"),
 
 
 rule published:
     input:
-        products("published"),
+        FILES.products("published"),
 
 
 rule compliant:
     input:
-        products("compliant"),
+        FILES.products("compliant"),
 
 
 for study in studies.STUDIES:
@@ -64,7 +64,7 @@ for study in studies.STUDIES:
             name:
                 study
             input:
-                drawn(study, studies.setups(study)[0]),
+                FILES.drawn(study, studies.setups(study)[0]),
 
 
 onstart:
@@ -80,7 +80,10 @@ onstart:
 
 
 onsuccess:
-    for line in found_in_recordings():
-        print(line)
+    done = list(workflow.dag.finished_jobs)
+    read = {job.wildcards.recording: job.output for job in done if job.rule.name == "recording"}
+    for name in sorted(read):
+        for line in findings(name, read[name].sanity):
+            print(line)
     Path(RESULTS, "logs", "snakemake.log").write_text(timed.line() + "\n")
-    print(f"Done: {made()}.")
+    print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")

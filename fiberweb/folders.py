@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from datetime import date
+from glob import glob
 from pathlib import Path
 
 # where disks appear once they are mounted, each in a folder of its own or of its user's
@@ -40,6 +41,11 @@ def folder(value: object, key: str) -> object:
     if text == os.path.dirname(text):
         raise ValueError(f"{key} = {value!r}: that is the whole disk: name a folder on it")
     return os.getcwd() if text == "." else text
+
+
+def tables_in(place: str | None) -> list[str]:
+    """The CSV files of a folder, if one is given."""
+    return sorted(glob(f"{place}/*.csv")) if place else []
 
 
 def missing_disk(path: Path) -> Path | None:

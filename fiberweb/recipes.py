@@ -10,12 +10,13 @@ through the deleted file then looks up to date, and the old figure stays.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 from fiberweb import source, studies
 from fiberweb.config import Config
+from fiberweb.folders import tables_in
 from fiberweb.runs import Run, runs
 from fiberweb.studies.base import Table
 
@@ -36,16 +37,12 @@ def code(script: str, *names: str) -> str:
 
 
 class Recipes:
-    """The digests under one config.
-
-    Attributes:
-        own: of tables that rules of their own make, by file name.
-    """
+    """The digests under one config."""
 
     def __init__(self, config: Config, table: dict[str, Run]):
         self._config, self._runs = config, table
         self._makers = {kind: studies.makers(kind) for kind in ("TABLES", "FIGURES")}
-        self.own: dict[str, str] = {}
+        self._jobs = studies.load("accuracy").JOBS
         # of hundreds of runs, each asked for by several tables
         self.response, self.capacity = cache(self.response), cache(self.capacity)
         self.certificate = cache(self.certificate)
@@ -80,8 +77,9 @@ class Recipes:
         if file == BEST:
             made_by = code("table", "fiberweb.studies.ridge.best", "fiberweb.products")
             return digest_of(made_by, self.table("ridge.csv", setup))
-        if file in self.own:
-            return self.own[file]
+        for job, made in self._jobs.items():
+            if file in made:
+                return self.measured(job)
         study = self._makers["TABLES"][file]
         section, spec = getattr(self._config, study), studies.load(study).TABLES[file]
         chosen = spec.runs(self.possible(study, setup), section)
@@ -95,6 +93,15 @@ class Recipes:
             [self.capacity(name) for name in names] if spec.capacities else [],
             [self.response(name) for name in names] if spec.responses else [],
             [self.certificate(run.name) for run in self.certified(spec, chosen)],
+        )
+
+    def measured(self, job: str) -> str:
+        """Of the tables of a job of the study `accuracy`, by its name."""
+        tables = self._jobs[job].values()
+        return digest_of(
+            code("measure", *[spec.make for spec in tables], "fiberweb.products"),
+            [(spec.make, spec.options(self._config.accuracy, [])) for spec in tables],
+            [self.table(given, "") for spec in tables for given in spec.tables],
         )
 
     def figure(self, name: str, setup: str) -> str:
@@ -113,13 +120,9 @@ class Recipes:
         names = [run.name for run in self.possible(study, setup)]
         return digest_of(self._choice(study, setup), [self.response(name) for name in names])
 
-    def claims(self, setup: str, published: Iterable[str]) -> str:
-        """Of the claims of a setup.
-
-        Args:
-            setup: name.
-            published: files of the authors' own tables.
-        """
+    def claims(self, setup: str) -> str:
+        """Of the claims of a setup."""
+        published = tables_in(self._config.published_tables)
         return digest_of(
             code("claims", "fiberweb.claims.judge", "fiberweb.products", *studies.claims()),
             [self.table(file, setup) for file in studies.judged_by(setup)],

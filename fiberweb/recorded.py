@@ -3,6 +3,7 @@ scored."""
 
 from __future__ import annotations
 
+import csv
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -56,6 +57,19 @@ def recorded(sections: Iterable[RecordingSection]) -> dict[str, Recorded]:
                 )
             found[name] = Recorded(path, read, card)
     return found
+
+
+def findings(name: str, path: str | Path) -> Iterator[str]:
+    """What is not in order with a recording, a line each; its log has all that was looked at.
+
+    Args:
+        name: of the recording.
+        path: its table of sanity.
+    """
+    with open(path, encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if row["severity"] != "ok":
+                yield f"{name}: {row['severity']}: {row['sentence']}"
 
 
 def _files(section: RecordingSection) -> Iterator[tuple[str, Path]]:

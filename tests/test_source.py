@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 
 from fiberweb import source, studies
+from fiberweb.studies import accuracy
 
 CALLED = sorted({
     *(spec.make for name in studies.STUDIES for spec in studies.load(name).TABLES.values()),
     *(spec.draw for name in studies.STUDIES for spec in studies.load(name).FIGURES.values()),
+    *(spec.make for job in accuracy.JOBS.values() for spec in job.values()),
     *studies.claims(),
     source.RUN,
     "fiberweb.scoring.capacity",

@@ -54,6 +54,11 @@ class Answer:
     text: str
     holds: bool
 
+    def with_remarks(self, remarks: Iterable[str]) -> Answer:
+        """The same, with what does not count in brackets behind the text."""
+        beside = "; ".join(remarks)
+        return Answer(f"{self.text} ({beside})", self.holds) if beside else self
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -72,6 +77,23 @@ class Evidence:
         frame = frame[frame["setup"] == self.setup]
         if frame.empty:
             raise NotComputed
+        return frame
+
+    def authors_table(self, name: str, columns: Iterable[str]) -> pd.DataFrame:
+        """A table of the authors'; NotComputed without them, ValueError if it or one of the columns
+        is not there."""
+        if self.published_tables is None:
+            raise NotComputed
+        path = self.published_tables / name
+        if not path.is_file():
+            raise ValueError(
+                f"{path} does not exist; put the authors' table there or give no folder"
+            )
+        frame = pd.read_csv(path)
+        missing = [column for column in columns if column not in frame.columns]
+        if missing:
+            known = ", ".join(frame.columns)
+            raise ValueError(f"{path} has no column {missing[0]!r}; it has {known}")
         return frame
 
     def totals(self, topology: str, sizes: Iterable[int], column: str) -> list[float]:
@@ -192,17 +214,6 @@ def _judge(rule: Callable | None, evidence: Evidence) -> tuple[str, str]:
     if (evidence.setup, name) in FITTED:
         return answer.text, CALIBRATED
     return answer.text, HOLDS if answer.holds else DIFFERS
-
-
-def authors_table(path: Path, columns: Iterable[str]) -> pd.DataFrame:
-    """A table of the authors'; ValueError if it or one of the columns is not there."""
-    if not path.is_file():
-        raise ValueError(f"{path} does not exist; put the authors' table there or give no folder")
-    frame = pd.read_csv(path)
-    missing = [name for name in columns if name not in frame.columns]
-    if missing:
-        raise ValueError(f"{path} has no column {missing[0]!r}; it has {', '.join(frame.columns)}")
-    return frame
 
 
 def rises(c: list[float]) -> bool:

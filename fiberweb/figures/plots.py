@@ -150,6 +150,16 @@ def colour_bar(
     bar.outline.set_linewidth(0.4)
 
 
+def mark_unstable(ax: Axes, rows: pd.DataFrame, x: str) -> None:
+    """An X above the axis for each unstable run, at its value of column x."""
+    style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", x]))
+
+
+def unstable_key(unstable: bool) -> dict[str, Line2D]:
+    """Legend entry of unstable runs, if there are any."""
+    return {"unstable run": Line2D([], [], **style.UNSTABLE)} if unstable else {}
+
+
 def key(rows: pd.DataFrame) -> dict[str, Line2D]:
     """Legend entries that figures of capacities share, by label."""
     handles = {INPUT_ALONE: Line2D([], [], **BASELINE_LINE)}
@@ -157,6 +167,4 @@ def key(rows: pd.DataFrame) -> dict[str, Line2D]:
         handles["± standard error"] = Line2D(
             [], [], marker="|", ms=7, mew=0.5, ls="", color=style.INK
         )
-    if (rows["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    return handles
+    return handles | unstable_key((rows["status"] == "unstable").any())

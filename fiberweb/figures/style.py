@@ -8,8 +8,9 @@ the user's matplotlibrc change a figure.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 
 import matplotlib as mpl
@@ -77,6 +78,20 @@ def applied() -> Iterator[None]:
         yield
 
 
+def drawing(draw: Callable[..., Figure]) -> Callable[..., Figure]:
+    """Makes a function that draws what it is given of a setup into one that is called with a path
+    as well: it runs in `applied`, and the figure that it returns is written, see `save`."""
+
+    @wraps(draw)
+    def drawn(given: dict, setup: str, path: str | Path, **options) -> Figure:
+        with applied():
+            figure = draw(given, setup, **options)
+            save(figure, path)
+        return figure
+
+    return drawn
+
+
 def figure(width: float, height: float) -> Figure:
     """An empty figure with constrained layout; width and height in mm."""
     empty = Figure(figsize=(width * MM, height * MM), layout="constrained")
@@ -93,11 +108,14 @@ def colours(count: int) -> np.ndarray:
     return SEQUENTIAL(np.linspace(0.0, 0.72, count) if count > 1 else np.zeros(1))
 
 
+def lettered(name: str, title: str) -> str:
+    """A title with its panel letter before it."""
+    return rf"$\mathbf{{{name}}}$   {title}"
+
+
 def letter(part: FigureBase, name: str, title: str) -> None:
     """Panel letter and title at the upper left of a figure or subfigure."""
-    part.suptitle(
-        rf"$\mathbf{{{name}}}$   {title}", x=0.005, ha="left", fontsize=RC["figure.titlesize"]
-    )
+    part.suptitle(lettered(name, title), x=0.005, ha="left", fontsize=RC["figure.titlesize"])
 
 
 def mark_unstable(ax: Axes, places: Sequence[float]) -> None:

@@ -55,15 +55,15 @@ class Raw:
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "px": 1.0}  # in m; pixels stay pixels
 
 
-def head(path: Path, size: int = 1 << 20) -> bytes:
-    """The first bytes of a file.
+def head(path: Path) -> bytes:
+    """The first bytes of a file, a million.
 
     Raises:
         ValueError: it is not there, cannot be read, or is empty; one sentence.
     """
     try:
         with path.open("rb") as file:
-            first = file.read(size)
+            first = file.read(1 << 20)
     except OSError as error:
         raise ValueError(
             f"{path} cannot be read ({error.strerror}): name a file that is there"

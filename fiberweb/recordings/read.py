@@ -81,14 +81,10 @@ def attempt(path: str | Path, options: dict) -> xr.Dataset:
     try:
         return read(path, False, options)
     except ValueError as error:
-        return _refused(path, str(error))
-
-
-def _refused(path: str | Path, reason: str) -> xr.Dataset:
-    print(reason)
-    found = [Finding("file", "refused", reason)]
-    attrs = {"status": "refused", "setup": "recording", "run": Path(path).stem}
-    return xr.Dataset(attrs=attrs | {"source": Path(path).name, "sanity": json.dumps(found)})
+        print(error)
+        found = [Finding("file", "refused", str(error))]
+        attrs = {"status": "refused", "setup": "recording", "run": Path(path).stem}
+        return xr.Dataset(attrs=attrs | {"source": Path(path).name, "sanity": json.dumps(found)})
 
 
 def listed(response: xr.Dataset) -> pd.DataFrame:

@@ -115,7 +115,9 @@ def card(response: xr.Dataset, **options) -> Card:
     step = processing.apart(scaled[fitted], horizon)
     judge = _Judge(fitted, horizon, chosen.alpha)
     quantities, rows, profile = {}, [], []
-    readouts = {BODY: x} | trivial_readouts(u, rate) | {TAPS: _delay_line(u, taps)}
+    # the input 0 .. taps - 1 frames ago, 0 before the start
+    delay_line = np.nan_to_num(recall_targets(u, range(taps)))
+    readouts = {BODY: x} | trivial_readouts(u, rate) | {TAPS: delay_line}
     for name, signals in readouts.items():
         found = {}
         for target, values in targets.items():
@@ -125,7 +127,10 @@ def card(response: xr.Dataset, **options) -> Card:
         counts = rank.ranks(signals, scaled, fitted, max(taps - 1, step), step)
         counts["ipc_threshold"] = threshold
         rows += [(name, quantity, value, np.nan, np.nan) for quantity, value in counts.items()]
-        rows += [(name, quantity, *_interval(q)) for quantity, q in quantities[name].items()]
+        rows += [
+            (name, quantity, float(value), *interval(draws))
+            for quantity, (value, draws) in quantities[name].items()
+        ]
         profile += [(name, degree, delay / rate, c) for (degree, delay), c in at_delay.items()]
     tested = len(u) - fitted.stop
     facts = {
@@ -235,11 +240,6 @@ def _remembered(u, x, fitted: slice, chosen: CardOptions, horizon: int) -> int:
     return min(max(1, round(c.sum())), horizon)
 
 
-def _delay_line(u: np.ndarray, taps: int) -> np.ndarray:
-    """(T, taps): the input 0 .. taps - 1 frames ago, 0 before the start."""
-    return np.nan_to_num(recall_targets(u, range(taps)))
-
-
 def _quantities(target: str, sums: np.ndarray) -> dict[str, tuple]:
     """(value, redrawn values or None) of what is said of a target, from sums (4, blocks, q)."""
     measures = {target: _mean}
@@ -260,8 +260,3 @@ _ERRORS = {
     "nrmse": lambda sums: np.sqrt(1.0 - capacity_of(sums))[..., 0],
     "nmse": lambda sums: (1.0 - capacity_of(sums))[..., 0],
 }
-
-
-def _interval(quantity: tuple) -> tuple[float, float, float]:
-    value, draws = quantity
-    return float(value), *interval(draws)

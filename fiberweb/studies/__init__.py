@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
 
 from fiberweb.model.scene import SETUPS
@@ -80,3 +81,10 @@ def claims() -> list[str]:
     """Names of the modules with rules of claims."""
     judged = [name for name in STUDIES if hasattr(load(name), "JUDGED_BY")]
     return [f"fiberweb.studies.{name}.claims" for name in judged]
+
+
+def caption(figure: str, setup: str) -> str:
+    """What the report says beneath a figure, by its name."""
+    study = load(makers("FIGURES")[figure])
+    text = Path(study.__file__).with_name(study.FIGURES[figure].caption).read_text("utf-8")
+    return text.replace("{{ setup }}", setup)

@@ -8,6 +8,7 @@ or as many square roots and divisions (measured), whichever is more.
 from __future__ import annotations
 
 import timeit
+from functools import cache
 
 import numpy as np
 from numba import njit
@@ -123,18 +124,14 @@ def _time(function, arguments, size: int) -> float:
     return 1e9 * min(times) / calls / size
 
 
+@cache
 def _repeated(count: int):
     """A compiled loop that calls a pass with `count` arguments again and again."""
-    if count not in _LOOPS:
-        names = ", ".join(f"a{i}" for i in range(count))
-        code = f"def loop(f, calls, {names}):\n    for _ in range(calls):\n        f({names})\n"
-        scope: dict = {}
-        exec(code, scope)
-        _LOOPS[count] = njit(scope["loop"], error_model="numpy")
-    return _LOOPS[count]
-
-
-_LOOPS: dict = {}
+    names = ", ".join(f"a{i}" for i in range(count))
+    code = f"def loop(f, calls, {names}):\n    for _ in range(calls):\n        f({names})\n"
+    scope: dict = {}
+    exec(code, scope)
+    return njit(scope["loop"], error_model="numpy")
 
 
 if __name__ == "__main__":

@@ -176,8 +176,8 @@ def planar(case: Case) -> Case:
 
 
 def speed_accuracy(
-    networks: list[int], length: float, buckling: float, seconds: float, duration: float,
-    window: int, workers: int = 1,
+    *exudyn: pd.DataFrame, networks: list[int], length: float, buckling: float, seconds: float,
+    duration: float, window: int, workers: int = 1,
 ) -> pd.DataFrame:  # fmt: skip
     """Error against cost; columns: `COLUMNS`.
 
@@ -185,6 +185,7 @@ def speed_accuracy(
     it to round-off (`errors_from` says so; see also `planar`).
 
     Args:
+        exudyn: the table of `fiberweb.validation.exudyn_check`, if there is one.
         networks: N of the crosshatches.
         length: of their fibres (m).
         buckling: number B of the force.
@@ -217,7 +218,7 @@ def speed_accuracy(
                  error, c_nl, c_m, yardstick / cpu, f"{alias.engine}, {alias.elements} a section")
             )  # fmt: skip
         rows += _published(n, length, window)
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.concat([pd.DataFrame(rows, columns=COLUMNS), *map(exudyn_rows, exudyn)])
 
 
 def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:

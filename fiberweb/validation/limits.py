@@ -40,6 +40,7 @@ FORCE_LIMIT, TENSION_LIMIT = 0.1, 0.15
 DRIFT_SAMPLES, DRIFT_ELEMENTS = 1000, 2  # few elements, so that a step is long
 DRIFT_AFTER = 2.0  # s; the shaking ends after one
 PUSHED = 0.05  # s in which the force of the out-of-plane runs grows; a section's period is 40 ms
+DISTURBANCE = 1e-6  # m/s out of the plane, of the driven point at the start of these runs
 PLANE_ELEMENTS = 4  # per section, as in the standard accuracy
 
 COLUMNS = (
@@ -232,9 +233,7 @@ def drift(steps: int) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=DRIFT_COLUMNS)
 
 
-def out_of_plane(
-    buckling: list[float], seconds: float, spacing: float = 0.1, disturbance: float = 1e-6
-) -> pd.DataFrame:
+def out_of_plane(buckling: list[float], seconds: float) -> pd.DataFrame:
     """Largest displacements out of the plane and in it of a disturbed 2x2 crosshatch.
 
     PyElastica, in space, with a force that grows smoothly within `PUSHED` and then stays.
@@ -242,8 +241,6 @@ def out_of_plane(
     Args:
         buckling: numbers B of the force.
         seconds: simulated.
-        spacing: m.
-        disturbance: velocity out of the plane of the driven point at the start (m/s).
 
     Returns:
         One row for each force and sample; columns `PLANE_COLUMNS`.
@@ -252,7 +249,7 @@ def out_of_plane(
 
     engine, rows = load("elastica"), []
     for number in buckling:
-        scene = Point(spacing=spacing, buckling=number).scene()
+        scene = Point(buckling=number).scene()
         timed = {"duration": seconds, "drive_rate": 1.0 / PUSHED, "tension_ramp": PUSHED}
         scene = replace(scene, **timed)
         mesh = build(scene, PLANE_ELEMENTS)
@@ -263,7 +260,7 @@ def out_of_plane(
         numerics = Numerics("elastica", PLANE_ELEMENTS, SAFETY * engine.largest_step(mesh))
         simulator, rods, step, per_sample = engine.assemble(mesh, numerics)
         middle = np.abs(mesh.load).sum(axis=1)[mesh.first[1] : mesh.first[2]] > 0
-        rods[1].velocity_collection[2, middle] += disturbance * engine.MM
+        rods[1].velocity_collection[2, middle] += DISTURBANCE * engine.MM
         stepper, now = elastica.PositionVerlet(), 0.0
         for at in scene.times:
             moved = np.concatenate([rod.position_collection.T for rod in rods]) / engine.MM

@@ -4,9 +4,9 @@
 rule setup_claims:
     input:
         tables=lambda wildcards: [
-            table(file, wildcards.setup) for file in studies.judged_by(wildcards.setup)
+            FILES.table(file, wildcards.setup) for file in studies.judged_by(wildcards.setup)
         ],
-        published=lambda wildcards: authors_tables(),
+        published=tables_in(CONFIG.published_tables),
     output:
         report(
             "<results>/tables/{setup}/claims.csv",
@@ -23,7 +23,7 @@ rule setup_claims:
     params:
         modules=studies.claims(),
         published_tables=CONFIG.published_tables,
-        recipe=lambda wildcards: RECIPES.claims(wildcards.setup, authors_tables()),
+        recipe=lambda wildcards: RECIPES.claims(wildcards.setup),
     message:
         "Holding the paper's claims against the tables, {wildcards.setup}"
     script:
@@ -32,7 +32,7 @@ rule setup_claims:
 
 rule claims:
     input:
-        [f"<results>/tables/{setup}/claims.csv" for setup in SUFFIXES],
+        [f"<results>/tables/{setup}/claims.csv" for setup in SETUPS],
     output:
         report("<results>/tables/claims.csv", caption="../report/claims.rst", category="Claims"),
     log:
@@ -45,7 +45,7 @@ rule claims:
     params:
         recipe=lambda wildcards: digest_of(
             code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
-            [RECIPES.claims(setup, authors_tables()) for setup in SUFFIXES],
+            [RECIPES.claims(setup) for setup in SETUPS],
         ),
     message:
         "The claims of all setups side by side"

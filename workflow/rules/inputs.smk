@@ -1,8 +1,6 @@
 # What the rules of studies, claims and recordings take as input and parameters, by what
 # `fiberweb.studies` and the config say.
 
-import csv
-
 
 def all_cores(wildcards):
     """Asked for by the job alone: `--unlock`, `--summary` and others are given no `--cores`."""
@@ -16,20 +14,26 @@ def made_in(study, setup):
     return study
 
 
+def of_runs(file, runs):
+    return [FILES.of_run(run, file) for run in runs]
+
+
 def table_made(wildcards):
     """(the section, the `Table`, the runs that it is made of)"""
-    study = made_in(TABLES[wildcards.table], wildcards.setup)
+    study = made_in(FILES.tables[wildcards.table], wildcards.setup)
     section, spec = getattr(CONFIG, study), studies.load(study).TABLES[wildcards.table]
     return section, spec, spec.runs(study_runs(study, wildcards.setup), section)
 
 
 def table_input(wildcards):
     _, spec, chosen = table_made(wildcards)
-    files = {"tables": [table(file, wildcards.setup) for file in spec.tables]}
-    files["capacities"] = [capacity(run) for run in chosen] if spec.capacities else []
-    files["certificates"] = [certificate(run) for run in RECIPES.certified(spec, chosen)]
-    files["responses"] = [response(run) for run in chosen] if spec.responses else []
-    return files
+    certified = RECIPES.certified(spec, chosen)
+    return {
+        "tables": [FILES.table(file, wildcards.setup) for file in spec.tables],
+        "capacities": of_runs("capacity.nc", chosen if spec.capacities else []),
+        "certificates": of_runs("certificate.csv", certified),
+        "responses": of_runs("response.nc", chosen if spec.responses else []),
+    }
 
 
 def table_options(wildcards):
@@ -39,33 +43,23 @@ def table_options(wildcards):
 
 
 def figure_made(wildcards):
-    """(the study, the `Figure`)"""
-    study = made_in(FIGURES[wildcards.figure], SETUP_OF[wildcards.suffix])
-    return study, studies.load(study).FIGURES[wildcards.figure]
-
-
-def caption(study, spec, setup):
-    """What the report says beneath a figure."""
-    text = Path(studies.load(study).__file__).with_name(spec.caption).read_text()
-    return text.replace("{{ setup }}", setup)
+    """(the study, the `Figure`, the setup)"""
+    setup = SETUP_OF[wildcards.suffix]
+    study = made_in(FILES.figures[wildcards.figure], setup)
+    return study, studies.load(study).FIGURES[wildcards.figure], setup
 
 
 def figure_input(wildcards):
-    (study, spec), setup = figure_made(wildcards), SETUP_OF[wildcards.suffix]
+    study, spec, setup = figure_made(wildcards)
     return {
-        "given": [table(file, setup) for file in spec.given],
-        "responses": [response(run) for run in study_runs(study, setup)] if spec.responses else [],
+        "given": [FILES.table(file, setup) for file in spec.given],
+        "responses": of_runs("response.nc", study_runs(study, setup) if spec.responses else []),
     }
 
 
 def figure_options(wildcards):
-    study, spec = figure_made(wildcards)
+    study, spec, _ = figure_made(wildcards)
     return spec.options(getattr(CONFIG, study))
-
-
-def authors_tables():
-    folder = CONFIG.published_tables
-    return sorted(glob(f"{folder}/*.csv")) if folder else []
 
 
 def cards(wildcards):
@@ -80,14 +74,3 @@ def recorded_file(wildcards):
     """The file of a recording; none where it is not there, which the job then says."""
     path = RECORDED[wildcards.recording].path
     return [str(path)] if path.exists() else []
-
-
-def found_in_recordings():
-    """What is not in order with the recordings that this call read, a line each; their logs have
-    all that was looked at."""
-    done = [job for job in workflow.dag.finished_jobs if job.rule.name == "recording"]
-    for job in sorted(done, key=lambda job: job.wildcards.recording):
-        with open(job.output.sanity, encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file):
-                if row["severity"] != "ok":
-                    yield f"{job.wildcards.recording}: {row['severity']}: {row['sentence']}"

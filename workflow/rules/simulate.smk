@@ -23,7 +23,7 @@ rule warmup:
 rule simulate:
     input:
         # not ancient(): where warmup has to run, Snakemake 9.27 then overlooks every simulation
-        compiled=lambda wildcards: compiled(RUNS[wildcards.run].engine),
+        compiled=lambda wildcards: FILES.compiled(RUNS[wildcards.run].engine),
     output:
         "<results>/runs/{run}/response.nc",
     log:

@@ -66,7 +66,7 @@ rule figure:
         draw=lambda wildcards: figure_made(wildcards)[1].draw,
         setup=lambda wildcards: SETUP_OF[wildcards.suffix],
         options=figure_options,
-        caption=lambda wildcards: caption(*figure_made(wildcards), SETUP_OF[wildcards.suffix]),
+        caption=lambda wildcards: studies.caption(wildcards.figure, SETUP_OF[wildcards.suffix]),
         recipe=lambda wildcards: RECIPES.figure(wildcards.figure, SETUP_OF[wildcards.suffix]),
     message:
         "Drawing {output.png}"

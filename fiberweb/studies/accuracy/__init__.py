@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import Annotated
 
 from pydantic import Field
@@ -9,7 +12,7 @@ from pydantic import Field
 from fiberweb.model.scene import Scene
 from fiberweb.sections import NotNegative, Positive, Section, Size, Some, key
 from fiberweb.simulation.plan import request
-from fiberweb.studies.base import Figure, Lab, crosshatch
+from fiberweb.studies.base import Figure, Lab, Table, crosshatch
 
 
 class StabilitySection(Section):
@@ -60,7 +63,60 @@ def check(section: AccuracySection, lab: Lab) -> None:
             raise ValueError(f"accuracy.length = {section.length:g} m, N = {n}: {error}") from None
 
 
+@dataclass(frozen=True)
+class Measured(Table):
+    """A table of no setup.
+
+    Attributes:
+        workers: whether `make` is told how many threads its job has, which then runs alone, since
+            it times something: a machine that is busy with other things still spoils that.
+    """
+
+    workers: bool = False
+
+
+def _runs(section: AccuracySection, _: Sequence) -> dict:
+    names = ("length", "buckling", "seconds", "duration", "window")
+    return {name: getattr(section, name) for name in names}
+
+
+def _networks(section: AccuracySection, _: Sequence) -> dict:
+    return {"networks": section.networks} | _runs(section, _)
+
+
+def _plane(section: AccuracySection, _: Sequence) -> dict:
+    return {"buckling": section.plane, "seconds": section.plane_seconds}
+
+
+def _limits(section: AccuracySection, _: Sequence) -> dict:
+    return {"box": section.stability.model_dump(), "steps": section.steps}
+
+
+def _drift(section: AccuracySection, _: Sequence) -> dict:
+    return {"steps": section.drift_steps}
+
+
 TABLES = {}
+# not every platform has a wheel of it; then the other tables are made without
+EXUDYN = ("exudyn.csv",) if find_spec("exudyn") else ()
+_FROM = "fiberweb.validation"
+# tables of no setup, by the job that makes them
+JOBS = {
+    "exudyn": {"exudyn.csv": Measured(f"{_FROM}.exudyn_check:table")},
+    "speed_accuracy": {
+        "speed_accuracy.csv": Measured(
+            f"{_FROM}.accuracy:speed_accuracy", tables=EXUDYN, options=_networks, workers=True
+        ),
+    },
+    "model_ladder": {
+        "model_ladder.csv": Measured(f"{_FROM}.accuracy:ladder", options=_runs, workers=True),
+        "out_of_plane.csv": Measured(f"{_FROM}.limits:out_of_plane", options=_plane),
+    },
+    "stability": {
+        "stability.csv": Measured(f"{_FROM}.limits:stability", options=_limits),
+        "energy_drift.csv": Measured(f"{_FROM}.limits:drift", options=_drift),
+    },
+}
 FIGURES = {
     name: Figure(
         f"fiberweb.studies.accuracy.figure:draw_{name}", given,

@@ -1,11 +1,6 @@
-"""Error against cost, what each simplification changes, and where the steps end.
-
-Drawing only: every number comes from the tables.
-"""
+"""Error against cost, what each simplification changes, and where the steps end."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -41,7 +36,8 @@ MIDDLE = {  # of the box: `limits.Point`'s defaults
 }
 
 
-def draw_speed_accuracy(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw_speed_accuracy(given: dict, setup: str) -> Figure:
     """Error against CPU time, one row a network; columns of `accuracy.COLUMNS`.
 
     The line is the Pareto front; hollow points are shorter steps on the same mesh. Exudyn, of
@@ -50,23 +46,20 @@ def draw_speed_accuracy(given: dict, setup: str, path: str | Path) -> Figure:
     table = given["speed_accuracy"]
     table = table[(table["setup"] == setup) & table["engine"].isin(MARKERS)]
     networks = list(dict.fromkeys(table["network"]))
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 8.0 + 55.0 * len(networks))
-        axes = figure.subplots(len(networks), 3, squeeze=False, sharex=True)
-        for row, (network, letter) in enumerate(zip(networks, "abcdef")):
-            rows = table[table["network"] == network]
-            for ax, (column, label) in zip(axes[row], ERRORS.items(), strict=True):
-                _front(ax, rows["seconds_per_run"], rows[column])
-                _points(ax, rows, column)
-                ax.set(xscale="log", yscale="log", ylabel=label)
-                ax.margins(0.12, 0.15)
-            axes[row, 0].set_title(
-                rf"$\mathbf{{{letter}}}$   {network.replace('x', '×')} crosshatch", loc="left"
-            )
-        for ax in axes[-1]:
-            ax.set_xlabel("CPU time of a 100 s run (s)")
-        figure.legend(*_engine_key(axes[0, 0]), loc="outside upper center", ncols=5)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 8.0 + 55.0 * len(networks))
+    axes = figure.subplots(len(networks), 3, squeeze=False, sharex=True)
+    for row, (network, letter) in enumerate(zip(networks, "abcdef")):
+        rows = table[table["network"] == network]
+        for ax, (column, label) in zip(axes[row], ERRORS.items(), strict=True):
+            _front(ax, rows["seconds_per_run"], rows[column])
+            _points(ax, rows, column)
+            ax.set(xscale="log", yscale="log", ylabel=label)
+            ax.margins(0.12, 0.15)
+        title = f"{network.replace('x', '×')} crosshatch"
+        axes[row, 0].set_title(style.lettered(letter, title), loc="left")
+    for ax in axes[-1]:
+        ax.set_xlabel("CPU time of a 100 s run (s)")
+    figure.legend(*_engine_key(axes[0, 0]), loc="outside upper center", ncols=5)
     return figure
 
 
@@ -110,20 +103,19 @@ def _engine_key(ax: Axes):
     return handles, [*(names.get(e, e) for e in MARKERS), "shorter step", "Pareto front"]
 
 
-def draw_model_ladder(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw_model_ladder(given: dict, setup: str) -> Figure:
     """What each rung changes and costs, and growth out of the plane; columns of
     `accuracy.LADDER_COLUMNS` and `limits.PLANE_COLUMNS`."""
     ladder, plane = given["model_ladder"], given["out_of_plane"]
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 120.0)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[62, 58])
-        style.letter(
-            top, "a", f"Each change against the rung above it (4×4, 100 mm, {plots.BUCKLING} = 0.8)"
-        )
-        style.letter(bottom, "b", "Out of the plane: a push that stays, towards the clamped ends")
-        _changes(top.subplots(1, 2, sharey=True, width_ratios=[2, 1]), ladder)
-        _growth(bottom.subplots(1, 2), plane)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 120.0)
+    top, bottom = figure.subfigures(2, 1, height_ratios=[62, 58])
+    style.letter(
+        top, "a", f"Each change against the rung above it (4×4, 100 mm, {plots.BUCKLING} = 0.8)"
+    )
+    style.letter(bottom, "b", "Out of the plane: a push that stays, towards the clamped ends")
+    _changes(top.subplots(1, 2, sharey=True, width_ratios=[2, 1]), ladder)
+    _growth(bottom.subplots(1, 2), plane)
     return figure
 
 
@@ -174,30 +166,29 @@ def _growth(axes, plane: pd.DataFrame) -> None:
         ax.set_xlabel("Time (s)")
 
 
-def draw_stability(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw_stability(given: dict, setup: str) -> Figure:
     """Found over predicted limits along each direction of the box, and all of them at once, with
     the drift of energy in words; columns of `limits.COLUMNS` and `limits.DRIFT_COLUMNS`."""
     table, drift = given["stability"], given["energy_drift"]
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 130.0)
-        axes = figure.subplots(3, 3)
-        _agreement(axes[0, 0], table)
-        for ax, (column, (label, unit)) in zip(axes.flat[1:], SWEPT.items()):
-            _sweep(ax, table, column, label, unit)
-        for ax, engine in zip(axes.flat[7:], ("kirchhoff", "cosserat")):
-            _ratios(ax, table, engine)
-            _drift(ax, drift[drift["engine"] == engine])
-        for letter, ax in zip("abcdefghi", axes.flat):
-            ax.set_title(rf"$\mathbf{{{letter}}}$   {ax.get_title(loc='left')}", loc="left")
-        handles = [
-            axes[0, 0].plot([], [], MARKERS[e], color=COLOUR[e], mfc="none", mew=0.8)[0]
-            for e in MARKERS
-        ]
-        handles += axes[0, 0].plot([], [], color=style.INK)
-        handles += axes[0, 0].plot([], [], **style.UNSTABLE)
-        names = ["kirchhoff", "cosserat", "PyElastica", "predicted", "automatic step unstable"]
-        figure.legend(handles, names, loc="outside upper center", ncols=5)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 130.0)
+    axes = figure.subplots(3, 3)
+    _agreement(axes[0, 0], table)
+    for ax, (column, (label, unit)) in zip(axes.flat[1:], SWEPT.items()):
+        _sweep(ax, table, column, label, unit)
+    for ax, engine in zip(axes.flat[7:], ("kirchhoff", "cosserat")):
+        _ratios(ax, table, engine)
+        _drift(ax, drift[drift["engine"] == engine])
+    for letter, ax in zip("abcdefghi", axes.flat):
+        ax.set_title(style.lettered(letter, ax.get_title(loc="left")), loc="left")
+    handles = [
+        axes[0, 0].plot([], [], MARKERS[e], color=COLOUR[e], mfc="none", mew=0.8)[0]
+        for e in MARKERS
+    ]
+    handles += axes[0, 0].plot([], [], color=style.INK)
+    handles += axes[0, 0].plot([], [], **style.UNSTABLE)
+    names = ["kirchhoff", "cosserat", "PyElastica", "predicted", "automatic step unstable"]
+    figure.legend(handles, names, loc="outside upper center", ncols=5)
     return figure
 
 

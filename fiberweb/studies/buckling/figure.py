@@ -36,7 +36,8 @@ GIF_SHADES = 5  # between a colour and white, for smooth edges
 THINNED = 5  # samples to a point where whole runs are shown
 
 
-def draw(given: dict, setup: str, path: str | Path, seconds: float) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str, seconds: float) -> Figure:
     """Snapshots of each run around the widest bulge of a column in any of them, how driven point
     and column move then, and the bulge against the momentary load; see `fiberweb.figures`.
 
@@ -50,27 +51,22 @@ def draw(given: dict, setup: str, path: str | Path, seconds: float) -> Figure:
     instants = _snapshots(responses[0], middle)
     films = [film_of(data, instants) for data in responses]
     heights = [45.0] * len(films) + [56.0]
-    with style.applied():
-        figure = style.figure(style.DOUBLE, sum(heights))
-        rows = list(figure.subfigures(len(heights), 1, height_ratios=heights))
-        letters = iter("abcdefghijklmnopqrstuvwxyz")
-        for row, film in zip(rows, films):
-            style.letter(row, next(letters), film.title)
-            _row(row, film, limits_of(films), norm_of(films))
-        left, right = rows[-1].subfigures(1, 2, width_ratios=[3, 2])
-        style.letter(left, next(letters), "Around the widest bulge (dots: the snapshots)")
-        _motion(left, responses, bulged, _span(responses[0], middle, seconds), instants)
-        style.letter(right, next(letters), "Columns against their momentary load")
-        _onset(right, responses, bulged)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, sum(heights))
+    rows = list(figure.subfigures(len(heights), 1, height_ratios=heights))
+    letters = iter("abcdefghijklmnopqrstuvwxyz")
+    for row, film in zip(rows, films):
+        style.letter(row, next(letters), film.title)
+        _row(row, film, limits_of(films), norm_of(films))
+    left, right = rows[-1].subfigures(1, 2, width_ratios=[3, 2])
+    style.letter(left, next(letters), "Around the widest bulge (dots: the snapshots)")
+    _motion(left, responses, bulged, _span(responses[0], middle, seconds), instants)
+    style.letter(right, next(letters), "Columns against their momentary load")
+    _onset(right, responses, bulged)
     return figure
 
 
 def animate(
-    responses: Sequence[xr.Dataset],
-    seconds: float,
-    frame_rate: float,
-    paths: Sequence[str | Path],
+    responses: Sequence[xr.Dataset], seconds: float, frame_rate: float, paths: Sequence[str | Path]
 ) -> None:
     """One GIF a run, in real time, all over the same seconds around the widest bulge.
 

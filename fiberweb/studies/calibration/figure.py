@@ -1,12 +1,7 @@
 """The calibration: misfit over the grid of unreported parameters, and its best points against
-the paper's four numbers.
-
-Drawing only: every number comes from the tables.
-"""
+the paper's four numbers."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -38,7 +33,8 @@ TOLERANCE = {"color": style.FAINT, "alpha": 0.4, "lw": 0}
 PAPER = {"color": style.GREY, "lw": 0.8}
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the calibration, as `fiberweb.figures` says.
 
     Args:
@@ -50,14 +46,12 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     roles = given["calibration_check"].set_index("role")
     baselines = given.get("ridge_baselines")
     dense = runs[runs["n"] == SIZE]
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 116.0)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[58, 58])
-        style.letter(top, "a", "Misfit of the 8×8 crosshatch to the paper's four numbers")
-        style.letter(bottom, "b", "The grid's best points")
-        _maps(top, dense, roles)
-        _numbers(bottom, runs, dense, roles, baselines)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 116.0)
+    top, bottom = figure.subfigures(2, 1, height_ratios=[58, 58])
+    style.letter(top, "a", "Misfit of the 8×8 crosshatch to the paper's four numbers")
+    style.letter(bottom, "b", "The grid's best points")
+    _maps(top, dense, roles)
+    _numbers(bottom, runs, dense, roles, baselines)
     return figure
 
 
@@ -95,9 +89,8 @@ def _maps(part: SubFigure, dense: pd.DataFrame, roles: pd.DataFrame) -> None:
         "least misfit": Line2D([], [], **BEST),
         "defaults of the compliant setup": Rectangle((0, 0), 1, 1, **OUTLINE),
     }
-    if (dense["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    panels.key_beside_title(part, handles)
+    unstable = plots.unstable_key((dense["status"] == "unstable").any())
+    panels.key_beside_title(part, handles | unstable)
 
 
 def _cells(ax: Axes, grid: np.ndarray, norm: LogNorm) -> None:
@@ -168,10 +161,7 @@ def _numbers(
     handles["± standard error"] = Line2D([], [], marker="_", ms=6, mew=0.7, ls="", color=style.INK)
     if baselines is not None:
         handles[plots.INPUT_ALONE] = Line2D([], [], **plots.BASELINE_LINE)
-    part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
-        handlelength=1.4, columnspacing=1.2,
-    )  # fmt: skip
+    panels.key(part, handles, ncols=len(handles), handlelength=1.4)
 
 
 def _list(ax: Axes, points: pd.DataFrame, default: pd.Series) -> None:
@@ -190,12 +180,8 @@ def _list(ax: Axes, points: pd.DataFrame, default: pd.Series) -> None:
 
 def _looks(runs: pd.DataFrame) -> dict[int, dict]:
     """Of each size: upright marks, that do not hide the short bars across them."""
-    sizes = sorted(runs["n"].unique())
     look = {"marker": "|", "ms": 5, "mew": 1.0}
-    return {
-        n: look | {"color": shade}
-        for n, shade in zip(sizes, style.colours(len(sizes)), strict=True)
-    }
+    return {n: look | {"color": shade} for n, shade in plots.colours(runs["n"]).items()}
 
 
 def _total(

@@ -81,19 +81,12 @@ def _variants(lab: Lab, n: int, length: float, force: float | None) -> Iterator[
 
 def watched(runs, section) -> list:
     """The published network whose force is varied, at the force of Eq. 3."""
+    nearest = min(section.n, key=lambda n: abs(n - section.force_n))
     return [
         run for run in runs
-        if run.choice == "eq3" and run.scene.network.n == min(section.n, key=_far(section.force_n))
+        if run.choice == "eq3" and run.scene.network.n == nearest
         and run.scene.dead_band and run.scene.filter_order
     ]  # fmt: skip
-
-
-def _far(n: int):
-    return lambda other: abs(other - n)
-
-
-def _look(section, runs) -> dict:
-    return {"every": section.look_every}
 
 
 TABLES = {
@@ -108,7 +101,7 @@ TABLES = {
         "fiberweb.studies.capacity_origin.band:looks",
         responses=watched,
         single=True,
-        options=_look,
+        options=lambda section, _: {"every": section.look_every},
     ),
     "dead_band.csv": Table(
         "fiberweb.studies.capacity_origin.band:growth", tables=("dead_band_looks.nc",)

@@ -1,14 +1,8 @@
-"""What makes the published capacities: filter and dead band on and off.
-
-Drawing only: every number comes from the tables.
-"""
+"""What makes the published capacities: filter and dead band on and off."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
@@ -33,11 +27,13 @@ CONVERGED = {
 }
 AUTHORS = {"color": style.INK, "marker": "x", "ms": 5, "mew": 1.0, "ls": "", "zorder": 6}
 MARK = {"ms": 3.0, "lw": 0.8, "elinewidth": 0.6}
+MARK_ONLY = {"ms": 3.5, "lw": 0.8}
 AXIS = (-0.03, 1.03)
 SAME_FORCE = 1e-3  # relative: the authors' lists are rounded
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the study, as `fiberweb.figures` says.
 
     Args:
@@ -45,31 +41,29 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
             "dead_band" (`band.growth`) and "dead_band_histogram" (`band.histogram`).
     """
     rows, baselines = given["capacity_origin"], given["capacity_origin_baselines"]
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 176.0)
-        top, middle, bottom = figure.subfigures(3, 1, height_ratios=[56, 62, 58])
-        sizes = rows[rows["force_choice"] == "eq3"]
-        style.letter(top, "a", f"Over size, at the force of Eq. 3 ({setup} setup)")
-        listed = {n: c for n, c in LISTED_AT_500MM.items() if n in set(sizes["n"])}
-        _totals(top, sizes, "n", listed, baselines)
-        for ax in top.axes:
-            ax.set(xlabel="Fibres in each direction, $N$", xticks=sorted(sizes["n"].unique()))
-        forces = rows[(rows["force_choice"] == "grid")]
-        n = int(forces["n"].iloc[0])
-        style.letter(middle, "b", f"Over the force, {n}×{n}, {_mm(forces)} mm spacing")
-        _totals(middle, forces, "force_N", _listed_forces(forces), baselines)
-        for ax in middle.axes:
-            ax.set(xlabel=r"Force $F_\mathrm{max}$ (N)", xscale="log")
-            plots.logarithmic(ax.xaxis)
-        _key(middle, rows)
-        left, centre, right = bottom.subfigures(1, 3, width_ratios=[1, 1, 1.5])
-        style.letter(left, "c", "Angles against the band")
-        _histogram(left, given["dead_band_histogram"])
-        style.letter(centre, "d", "Growth of the band")
-        _growth(centre, given["dead_band"])
-        style.letter(right, "e", f"Mesh and step, {n}×{n}")
-        _meshes(right, rows[rows["force_choice"] == "mesh"])
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 176.0)
+    top, middle, bottom = figure.subfigures(3, 1, height_ratios=[56, 62, 58])
+    sizes = rows[rows["force_choice"] == "eq3"]
+    style.letter(top, "a", f"Over size, at the force of Eq. 3 ({setup} setup)")
+    listed = {n: c for n, c in LISTED_AT_500MM.items() if n in set(sizes["n"])}
+    _totals(top, sizes, "n", listed, baselines)
+    for ax in top.axes:
+        ax.set(xlabel="Fibres in each direction, $N$", xticks=sorted(sizes["n"].unique()))
+    forces = rows[(rows["force_choice"] == "grid")]
+    n = int(forces["n"].iloc[0])
+    style.letter(middle, "b", f"Over the force, {n}×{n}, {_mm(forces)} mm spacing")
+    _totals(middle, forces, "force_N", _listed_forces(forces), baselines)
+    for ax in middle.axes:
+        ax.set(xlabel=r"Force $F_\mathrm{max}$ (N)", xscale="log")
+        plots.logarithmic(ax.xaxis)
+    _key(middle, rows)
+    left, centre, right = bottom.subfigures(1, 3, width_ratios=[1, 1, 1.5])
+    style.letter(left, "c", "Angles against the band")
+    _histogram(left, given["dead_band_histogram"])
+    style.letter(centre, "d", "Growth of the band")
+    _growth(centre, given["dead_band"])
+    style.letter(right, "e", f"Mesh and step, {n}×{n}")
+    _meshes(right, rows[rows["force_choice"] == "mesh"])
     return figure
 
 
@@ -90,7 +84,7 @@ def _totals(part: SubFigure, rows, x: str, listed: dict, baselines: pd.DataFrame
             stable = frame[frame["status"] == "ok"].sort_values(x)
             plots.points(ax, stable, x, name, **MARK | look)
         ax.plot(list(listed), [values[column] for values in listed.values()], **AUTHORS)
-        style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", x]))
+        plots.mark_unstable(ax, rows, x)
         ax.set(ylabel=plots.TOTALS[name], ylim=AXIS)
         plots.baselines(ax, baselines, name)
 
@@ -111,14 +105,11 @@ def _mm(rows: pd.DataFrame) -> float:
 
 
 def _key(part: SubFigure, rows: pd.DataFrame) -> None:
-    handles = {label: Line2D([], [], **MARK_ONLY | look) for label, look in VARIANTS.values()}
-    handles |= {label: Line2D([], [], **MARK_ONLY | look) for label, look in CONVERGED.values()}
+    looks = {**dict(VARIANTS.values()), **dict(CONVERGED.values())}
+    handles = {label: Line2D([], [], **MARK_ONLY | look) for label, look in looks.items()}
     handles |= {"the authors' tables": Line2D([], [], **AUTHORS)}
     handles |= panels.baseline_and_unstable((rows["status"] == "unstable").any())
     panels.key(part, handles, ncols=4)
-
-
-MARK_ONLY = {"ms": 3.5, "lw": 0.8}
 
 
 def _histogram(part: SubFigure, table: pd.DataFrame) -> None:
@@ -156,13 +147,9 @@ def _meshes(part: SubFigure, rows: pd.DataFrame) -> None:
                 frame = _variant(rows[at], *which).sort_values("element")
                 shown = {"color": look["color"], "marker": marker}
                 plots.points(ax, frame, "element", name, **MARK | shown)
-        style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", "element"]))
+        plots.mark_unstable(ax, rows, "element")
         ax.set(xlabel="Element (mm)", ylabel=plots.TOTALS[name], ylim=AXIS)
         ax.set_xlim(0.0, 1.15 * rows["element"].max())
-    _step_key(ax, steps)
-
-
-def _step_key(ax: Axes, steps: dict[float, str]) -> None:
     handles = [
         Line2D([], [], color=style.INK, marker=marker, ls="", ms=3, label=f"{1e6 * step:g} µs")
         for step, marker in steps.items()

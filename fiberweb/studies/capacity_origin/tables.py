@@ -25,19 +25,13 @@ def table(
     """
     frames = [
         tables.rows(
-            [_scored(path, alpha)], force_choice=choice,
+            [capacity.score(dataset.load(path), scoring="published", alpha=alpha)],
+            force_choice=choice,
             layout=lambda scene, _: scene.layout,
-            filter_order=_of_scene("filter_order"), dead_band=_of_scene("dead_band"),
+            filter_order=lambda scene, _: int(scene.filter_order),
+            dead_band=lambda scene, _: int(scene.dead_band),
             **tables.NUMERICS,
         )
         for path, choice in zip(response_paths, choices, strict=True)
-    ]  # fmt: skip
+    ]
     return pd.concat(frames, ignore_index=True)
-
-
-def _of_scene(field: str):
-    return lambda scene, _: int(getattr(scene, field))
-
-
-def _scored(path: str | Path, alpha: float):
-    return capacity.score(dataset.load(path), scoring="published", alpha=alpha)

@@ -1,11 +1,6 @@
-"""Perturbed pairs around buckling: how they part, and what that does to capacities.
-
-Drawing only: every number comes from the tables.
-"""
+"""Perturbed pairs around buckling: how they part, and what that does to capacities."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -24,7 +19,8 @@ BUCKLING = {"color": style.FAINT, "lw": 0.8}
 POINTS = {"color": style.INK, "marker": "o", "ms": 2.4, "lw": 0.8, "elinewidth": 0.7, "capsize": 2}
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw separation over time, and rate, consistency and capacities over B, as
     `fiberweb.figures` says.
 
@@ -36,26 +32,28 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     apart = given["chaos_separations"]
     apart = apart[apart["setup"] == setup]
     bad = (rows[["status", "twin_status"]] == "unstable").any(axis=1)
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 122.0)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[56, 66])
-        style.letter(top, "a", f"Separation of perturbed pairs, rms over readouts ({setup} setup)")
-        _separations(top.subplots(), apart, rows)
-        axes = bottom.subplots(1, 4)
-        titles = ("Growth rate", "Pairs, last half", *panels.CAPACITIES.values())
-        for ax, letter, title in zip(axes, "bcde", titles, strict=True):
-            panels.letter(ax, letter, title)
-            _over_buckling(ax, rows)
-        _rate(axes[0], rows)
-        _consistency(axes[1], rows)
-        for ax, (name, symbol) in zip(axes[2:], plots.TOTALS.items(), strict=True):
-            _points(ax, rows, name, f"{name}_se")
-            ax.set(ylim=(-0.03, 1.03), ylabel=symbol)
-            plots.baselines(ax, given["chaos_baselines"], name)
-        for ax in axes:
-            style.mark_unstable(ax, list(rows.loc[bad, "buckling_number"]))
-        panels.key(bottom, _handles(bad.any()), ncols=2, columnspacing=3.0)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 122.0)
+    top, bottom = figure.subfigures(2, 1, height_ratios=[56, 66])
+    style.letter(top, "a", f"Separation of perturbed pairs, rms over readouts ({setup} setup)")
+    _separations(top.subplots(), apart, rows)
+    axes = bottom.subplots(1, 4)
+    titles = ("Growth rate", "Pairs, last half", *panels.CAPACITIES.values())
+    for ax, letter, title in zip(axes, "bcde", titles, strict=True):
+        panels.letter(ax, letter, title)
+        _over_buckling(ax, rows)
+    axes[0].axhline(0.0, color=style.GREY, lw=0.6, zorder=0)
+    _points(axes[0], rows, "rate_per_s", "rate_se")
+    axes[0].set_ylabel("Rate (1/s)")
+    axes[1].plot(rows["buckling_number"], rows["consistency"], **CONSISTENCY)
+    axes[1].plot(rows["buckling_number"], rows["saturation"], **SATURATION)
+    axes[1].set(ylim=(-0.03, 1.03), ylabel="Consistency, saturation")
+    for ax, (name, symbol) in zip(axes[2:], plots.TOTALS.items(), strict=True):
+        _points(ax, rows, name, f"{name}_se")
+        ax.set(ylim=(-0.03, 1.03), ylabel=symbol)
+        plots.baselines(ax, given["chaos_baselines"], name)
+    for ax in axes:
+        style.mark_unstable(ax, list(rows.loc[bad, "buckling_number"]))
+    panels.key(bottom, _handles(bad.any()), ncols=2, columnspacing=3.0)
     return figure
 
 
@@ -103,18 +101,6 @@ def _over_buckling(ax: Axes, rows: pd.DataFrame) -> None:
 
 def _points(ax: Axes, rows: pd.DataFrame, name: str, error: str) -> None:
     ax.errorbar(rows["buckling_number"], rows[name], rows[error], **POINTS)
-
-
-def _rate(ax: Axes, rows: pd.DataFrame) -> None:
-    ax.axhline(0.0, color=style.GREY, lw=0.6, zorder=0)
-    _points(ax, rows, "rate_per_s", "rate_se")
-    ax.set_ylabel("Rate (1/s)")
-
-
-def _consistency(ax: Axes, rows: pd.DataFrame) -> None:
-    ax.plot(rows["buckling_number"], rows["consistency"], **CONSISTENCY)
-    ax.plot(rows["buckling_number"], rows["saturation"], **SATURATION)
-    ax.set(ylim=(-0.03, 1.03), ylabel="Consistency, saturation")
 
 
 def _handles(unstable: bool) -> dict[str, Line2D]:

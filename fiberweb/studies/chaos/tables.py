@@ -10,7 +10,7 @@ input, which every capacity presumes, and below 1 where it depends on the start 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -145,7 +145,11 @@ def separations(response_paths: Sequence[str | Path]) -> pd.DataFrame:
 
 def pairs(response_paths: Sequence[str | Path]) -> Iterator[Pair]:
     """Each two neighbours of a list of responses; see `rates`."""
-    for first, second in _by_two(response_paths):
+    if len(response_paths) % 2:
+        raise ValueError(
+            f"{len(response_paths)} responses are no perturbed pairs; give an even number"
+        )
+    for first, second in zip(response_paths[::2], response_paths[1::2]):
         pair = Pair(dataset.load(first), dataset.load(second))
         scenes = [Scene.from_json(run.attrs["scene"]) for run in pair]
         alike = len({replace(scene, disturbance=0.0).to_json() for scene in scenes}) == 1
@@ -155,12 +159,6 @@ def pairs(response_paths: Sequence[str | Path]) -> Iterator[Pair]:
                 "nothing but a disturbance above 0, the less disturbed one first"
             )
         yield pair
-
-
-def _by_two(paths: Sequence[str | Path]) -> Iterable[tuple[str | Path, str | Path]]:
-    if len(paths) % 2:
-        raise ValueError(f"{len(paths)} responses are no perturbed pairs; give an even number")
-    return zip(paths[::2], paths[1::2])
 
 
 def _measured(pair: Pair) -> tuple:

@@ -11,13 +11,13 @@ import pandas as pd
 
 from fiberweb.claims.judge import (
     ALLOWANCE,
-    ROUND_OFF,
     SUBSTANTIAL,
     Answer,
     Evidence,
     NotComputed,
     check,
     inside_range,
+    within_tolerance,
 )
 
 # in a capacity: the most by which a group is "slightly" better or worse; our own choice, three
@@ -137,8 +137,7 @@ def _judged(
             beside.append(f"{label}: {answer.text}")
     if verdict is None:
         raise NotComputed("no run at the verdict force")
-    text = f"{verdict.text} ({'; '.join(beside)})" if beside else verdict.text
-    return Answer(text, verdict.holds)
+    return verdict.with_remarks(beside)
 
 
 def _parts(frame: pd.DataFrame, shuffled: bool) -> Iterator[tuple[str, bool, pd.DataFrame]]:
@@ -163,8 +162,7 @@ def _in_range(evidence: Evidence, scores: pd.DataFrame, column: str) -> Answer:
 
 def _near_paper(evidence: Evidence, scores: pd.DataFrame, column: str) -> Answer:
     share = _share(scores, "near_actuation", column)
-    close = abs(share - evidence.claim["paper"]) <= evidence.claim["tolerance"] + ROUND_OFF
-    return Answer(f"{share:.3f}", close)
+    return Answer(f"{share:.3f}", within_tolerance(evidence.claim, share))
 
 
 def _ranked(values: pd.Series) -> str:

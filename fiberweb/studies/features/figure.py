@@ -1,17 +1,11 @@
-"""Fig. 4: what groups of readouts score, and how few signals keep the capacity.
-
-Drawing only: every number comes from the tables.
-"""
+"""Fig. 4: what groups of readouts score, and how few signals keep the capacity."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from cmcrameri import cm
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -49,7 +43,8 @@ GROUP = {"color": style.GREY, "mfc": "white", "mew": 0.8, "ms": 3.4, "ls": ""}
 RANK_LINE = {"color": style.INK, "lw": 0.8, "ls": (0, (1, 1.5))}
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw Fig. 4, as `fiberweb.figures` says.
 
     Args:
@@ -60,20 +55,18 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
         plots.rows_of(given[name], name, setup) for name in ("features", "features_greedy")
     )
     network = crosshatch(int(table["n"].iloc[0]), length=1.0)
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 218.0)
-        top, middle, bottom = figure.subfigures(3, 1, height_ratios=[45, 117, 56])
-        size = f"{network.n}×{network.n}"
-        style.letter(top, "a", f"Groups of readouts, {size} crosshatch ({setup} setup)")
-        _schematics(top, network)
-        _scores(middle, table, given["features_baselines"])
-        curves, places = bottom.subfigures(1, 2, width_ratios=[1.3, 1])
-        force = f"{greedy['force_N'].iloc[0]:g} N"
-        style.letter(curves, "e", f"Signals at {force}, chosen one by one on the training part")
-        style.letter(places, "f", "Where the fewest that suffice lie")
-        _curves(curves, table, greedy)
-        _places(places, network, greedy)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 218.0)
+    top, middle, bottom = figure.subfigures(3, 1, height_ratios=[45, 117, 56])
+    size = f"{network.n}×{network.n}"
+    style.letter(top, "a", f"Groups of readouts, {size} crosshatch ({setup} setup)")
+    _schematics(top, network)
+    _scores(middle, table, given["features_baselines"])
+    curves, places = bottom.subfigures(1, 2, width_ratios=[1.3, 1])
+    force = f"{greedy['force_N'].iloc[0]:g} N"
+    style.letter(curves, "e", f"Signals at {force}, chosen one by one on the training part")
+    style.letter(places, "f", "Where the fewest that suffice lie")
+    _curves(curves, table, greedy)
+    _places(places, network, greedy)
     return figure
 
 
@@ -94,7 +87,7 @@ def _schematics(part: SubFigure, network: Network) -> None:
             ("x and y used", (True, True)), ("x used", (True, False)), ("y used", (False, True)),
         )
     }  # fmt: skip
-    handles["driven point"] = Line2D([], [], color=style.DRIVE, marker=r"$\updownarrow$", ls="")
+    handles["driven point"] = Line2D([], [], color=style.DRIVE, marker=panels.DRIVEN, ls="")
     handles["held end"], handles["pulled end"] = Line2D([], [], **HELD), Line2D([], [], **PULLED)
     axes[4].axis("off")
     axes[4].legend(handles.values(), handles.keys(), loc="center left", labelspacing=0.4)
@@ -114,17 +107,11 @@ def _marked(ax: Axes, network: Network, group: str) -> int:
 
 
 def _network(ax: Axes, network: Network) -> None:
-    ax.add_collection(LineCollection(network.fibres, colors=style.FAINT, linewidths=0.5))
-    near, far = network.fibres[network.driven_fibre]
-    driven = near + (far - near) * network.driven_distance / network.length
-    ax.plot(*driven, marker=r"$\updownarrow$", ms=8, color=style.DRIVE, zorder=3)
+    panels.network(ax, network, style.FAINT, (-0.03, 1.03))
     held, pulled = network.fibres[:, 0], network.fibres[:, 1]
     ax.plot(*held.T, **HELD)
     ax.plot(*pulled[: network.n].T, **PULLED)
     ax.plot(*pulled[network.n :].T, **PULLED | {"marker": "^"})
-    limits = (-0.03, 1.03)
-    ax.set(aspect="equal", xlim=limits, ylim=limits)
-    ax.axis("off")
 
 
 def _strokes(ax: Axes, points: pd.DataFrame, used: np.ndarray) -> None:

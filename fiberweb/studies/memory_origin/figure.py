@@ -1,11 +1,6 @@
-"""What carries memory: the Laplace filter, the crossings, or the damping of fibres or material.
-
-Drawing only: every number comes from the tables.
-"""
+"""What carries memory: the Laplace filter, the crossings, or the damping of fibres or material."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -14,7 +9,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from fiberweb.figures import plots, style
+from fiberweb.figures import panels, plots, style
 
 K, NU, GAMMA = "crossing_stiffness_N_m", "crossing_damping_Ns_m", "damping_per_s"
 LOSS = "loss_factor"
@@ -48,7 +43,8 @@ COLUMNS = {  # of panel b: title and label of x
 }
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the study, as `fiberweb.figures` says: panels a and b of the compliant setup, of the
     published one the authors' networks with and without the filter.
 
@@ -58,20 +54,18 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     """
     rows = plots.rows_of(given["memory_origin"], "memory_origin", setup)
     baseline = given["memory_origin_baselines"]
-    with style.applied():
-        if setup == "published":
-            figure = style.figure(style.DOUBLE, 66.0)
-            style.letter(figure, "a", "Memory of the authors' networks (published setup)")
-            _totals(figure, _filter_series(rows), rows, baseline)
-        else:
-            figure = style.figure(style.DOUBLE, 174.0)
-            top, bottom = figure.subfigures(2, 1, height_ratios=[66, 108])
-            style.letter(top, "a", "What carries memory (compliant setup)")
-            style.letter(bottom, "b", "One thing at a time")
-            families = _families(rows)
-            _totals(top, _compliant_series(families), rows, baseline)
-            _sweeps(bottom, families, baseline)
-        style.save(figure, path)
+    if setup == "published":
+        figure = style.figure(style.DOUBLE, 66.0)
+        style.letter(figure, "a", "Memory of the authors' networks (published setup)")
+        _totals(figure, _filter_series(rows), rows, baseline)
+    else:
+        figure = style.figure(style.DOUBLE, 174.0)
+        top, bottom = figure.subfigures(2, 1, height_ratios=[66, 108])
+        style.letter(top, "a", "What carries memory (compliant setup)")
+        style.letter(bottom, "b", "One thing at a time")
+        families = _families(rows)
+        _totals(top, _compliant_series(families), rows, baseline)
+        _sweeps(bottom, families, baseline)
     return figure
 
 
@@ -161,7 +155,7 @@ def _totals(part: SubFigure, kinds: dict, rows: pd.DataFrame, baseline: pd.DataF
         ax.set(xlabel="Fibres in each direction, $N$", ylabel=plots.TOTALS[name])
         ax.set(xticks=sizes, xlim=(sizes[0] - 0.8, sizes[-1] + 0.8), ylim=AXIS)
         lost = pd.concat([frame for frame, _ in series.values()])
-        style.mark_unstable(ax, list(lost.loc[lost["status"] == "unstable", "n"]))
+        plots.mark_unstable(ax, lost, "n")
         plots.baselines(ax, baseline, name)
     beside.axis("off")
     keys = {
@@ -238,7 +232,7 @@ def _lines(ax: Axes, rows: pd.DataFrame, x: str, name: str, colour: dict) -> Non
     for n, frame in rows.groupby("n"):
         frame = frame[frame["status"] == "ok"].sort_values(x)
         plots.points(ax, frame, x, name, marker="o", ms=2.2, lw=0.8, color=colour[n])
-    style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", x]))
+    plots.mark_unstable(ax, rows, x)
 
 
 def _filter(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
@@ -255,7 +249,7 @@ def _filter(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
             plots.points(ax, off, "element", name, ms=3.6, **look | OFF)
             plots.points(ax, on, "element", name, ms=2.2, **look)
     ax.set_xlim(0.0, 1.15 * rows["element"].max())
-    style.mark_unstable(ax, list(rows.loc[rows["status"] == "unstable", "element"]))
+    plots.mark_unstable(ax, rows, "element")
 
 
 def _markers(filtered: pd.DataFrame) -> dict[float, str]:
@@ -271,7 +265,4 @@ def _key(part: SubFigure, colour: dict, filtered: pd.DataFrame) -> None:
     handles["filter off"] = Line2D([], [], marker="o", ms=3.6, color=style.INK, **OFF)
     handles["setup's own value"] = Line2D([], [], color=style.FAINT, lw=2.5)
     handles["numerics"] = Patch(color=TINT)
-    part.legend(
-        handles.values(), handles.keys(), ncols=len(handles), loc="outside lower center",
-        handlelength=1.2, columnspacing=1.2,
-    )  # fmt: skip
+    panels.key(part, handles, ncols=len(handles), handlelength=1.2)

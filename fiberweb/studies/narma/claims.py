@@ -21,13 +21,16 @@ def root_mean_square_error(evidence: Evidence) -> Answer:
     order = OF_CLAIM[evidence.claim["id"]]
     table = _twin(evidence)
     ours = _value(table, "rmse", order)
-    remarks = [
-        f"input alone {_best_input(table, order):{DIGITS}}",
-        *_beside(table, "rmse", [order]),
-    ]
+    names = ("u", "derivatives", "powers")
+    alone = min(_value(table, "rmse", order, readout=name) for name in names)
     row = _row(table, order)
-    remarks.append(f"the target's mean {row['rmse'] / row['nrmse']:{DIGITS}}")
-    return Answer(f"{ours:{DIGITS}} ({'; '.join(remarks)})", within_tolerance(evidence.claim, ours))
+    remarks = [
+        f"input alone {alone:{DIGITS}}",
+        *_beside(table, "rmse", [order]),
+        f"the target's mean {row['rmse'] / row['nrmse']:{DIGITS}}",
+    ]
+    near = within_tolerance(evidence.claim, ours)
+    return Answer(f"{ours:{DIGITS}}", near).with_remarks(remarks)
 
 
 @check("N4")
@@ -40,8 +43,7 @@ def interdecile_range(evidence: Evidence) -> Answer:
         for value, paper, tolerance in zip(ours, claim["paper"], claim["tolerance"], strict=True)
     ]
     text = ", ".join(f"{value:{DIGITS}}" for value in ours)
-    beside = _beside(table, "interdecile_range", ORDERS)
-    return Answer(f"{text} ({'; '.join(beside)})", all(near))
+    return Answer(text, all(near)).with_remarks(_beside(table, "interdecile_range", ORDERS))
 
 
 @check("N5")
@@ -66,22 +68,16 @@ def _twin(evidence: Evidence) -> pd.DataFrame:
 
 def _row(
     table: pd.DataFrame, order: int, readout: str = "network", timing: str = "same", step=None
-) -> pd.Series:
+) -> dict:
     """One row; step None is the reading of the verdict."""
     reading = table["verdict"] if step is None else table["frame_step"] == step
     same = (table["order"] == order) & (table["readout"] == readout) & (table["timing"] == timing)
     (row,) = table[reading & same].to_dict("records")
-    return pd.Series(row)
+    return row
 
 
 def _value(table: pd.DataFrame, column: str, order: int, **which) -> float:
     return float(_row(table, order, **which)[column])
-
-
-def _best_input(table: pd.DataFrame, order: int) -> float:
-    """The least RMSE of readouts that are made of the input alone."""
-    names = ("u", "derivatives", "powers")
-    return min(_value(table, "rmse", order, readout=name) for name in names)
 
 
 def _beside(table: pd.DataFrame, column: str, orders) -> list[str]:

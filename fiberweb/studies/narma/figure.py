@@ -1,13 +1,9 @@
-"""Fig. 6: errors and estimates of the NARMA tasks, on the experiment's twin and on networks.
-
-Drawing only: every number comes from the table and the estimates.
-"""
+"""Fig. 6: errors and estimates of the NARMA tasks, on the experiment's twin and on networks."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -57,7 +53,8 @@ class Readout:
     inner: Sequence[float] | str  # median and deciles, to show on the face
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw Fig. 6, a column for each order, as `fiberweb.figures` says.
 
     Args:
@@ -67,22 +64,20 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     readouts = _readouts(table)
     shown = _example(table, readouts)
     orders = sorted(table["order"].unique())
-    with style.applied():
-        figure = style.figure(style.DOUBLE, sum(ROWS) + 26.0)
-        figure.suptitle(f"NARMA tasks, {setup} setup", x=0.005, ha="left")
-        axes = figure.subplots(len(ROWS), len(orders), squeeze=False, height_ratios=ROWS)
-        for column, order in zip(axes.T, orders, strict=True):
-            of_order = table[table["order"] == order]
-            _errors(column[0], estimates, readouts, order)
-            for ax, measure in zip(column[1:-1], MEASURES, strict=True):
-                _bars(ax, of_order, readouts, measure)
-            _labels(column[-2], readouts)
-            _traces(column[-1], estimates, of_order, shown, order)
-        _titles(axes[:, 0], shown)
-        axes[-2, 0].set_xlabel(READOUTS, loc="left")
-        figure.align_ylabels(axes[:, 0])
-        panels.key(figure, _handles(table), ncols=4)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, sum(ROWS) + 26.0)
+    figure.suptitle(f"NARMA tasks, {setup} setup", x=0.005, ha="left")
+    axes = figure.subplots(len(ROWS), len(orders), squeeze=False, height_ratios=ROWS)
+    for column, order in zip(axes.T, orders, strict=True):
+        of_order = table[table["order"] == order]
+        _errors(column[0], estimates, readouts, order)
+        for ax, measure in zip(column[1:-1], MEASURES, strict=True):
+            _bars(ax, of_order, readouts, measure)
+        _labels(column[-2], readouts)
+        _traces(column[-1], estimates, of_order, shown, order)
+    _titles(axes[:, 0], shown)
+    axes[-2, 0].set_xlabel(READOUTS, loc="left")
+    figure.align_ylabels(axes[:, 0])
+    panels.key(figure, _handles(table), ncols=4)
     return figure
 
 
@@ -239,6 +234,4 @@ def _handles(table: pd.DataFrame) -> dict[str, Artist]:
         "target $y$": Line2D([], [], **panels.TARGET),
         r"estimate $\hat{y}$": Line2D([], [], **panels.PREDICTION),
     }
-    if (table["status"] == "unstable").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    return handles
+    return handles | plots.unstable_key((table["status"] == "unstable").any())

@@ -1,11 +1,6 @@
-"""Capacities against readout noise.
-
-Drawing only: every number comes from the tables.
-"""
+"""Capacities against readout noise."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -23,7 +18,8 @@ AMPLITUDES = {"fc": style.FAINT, "ec": style.FAINT, "lw": 0.8}
 BARS = {"elinewidth": 0.8, "capsize": 2.5}  # wider than the markers, or small bars would not show
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw C_nl and C_m over the noise of the readouts, as `fiberweb.figures` says.
 
     Args:
@@ -31,19 +27,17 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     """
     rows = plots.rows_of(given["noise"], "noise", setup)
     colour = plots.colours(rows["n"])
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 70.0)
-        axes = figure.subplots(1, 2)
-        for ax, (name, symbol), letter in zip(axes, plots.TOTALS.items(), "ab", strict=True):
-            for n in colour:
-                _network(ax, rows[rows["n"] == n], name, colour[n])
-            _scale(ax, rows)
-            title = f"{panels.CAPACITIES[name]} ({setup} setup)"
-            panels.letter(ax, letter, title, pad=20)  # above the instruments
-            ax.set(ylabel=symbol, ylim=(0.0, 1.0))
-            plots.baselines(ax, given["noise_baselines"], name)
-        panels.key(figure, _handles(rows, colour))
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 70.0)
+    axes = figure.subplots(1, 2)
+    for ax, (name, symbol), letter in zip(axes, plots.TOTALS.items(), "ab", strict=True):
+        for n in colour:
+            _network(ax, rows[rows["n"] == n], name, colour[n])
+        _scale(ax, rows)
+        title = f"{panels.CAPACITIES[name]} ({setup} setup)"
+        panels.letter(ax, letter, title, pad=20)  # above the instruments
+        ax.set(ylabel=symbol, ylim=(0.0, 1.0))
+        plots.baselines(ax, given["noise_baselines"], name)
+    panels.key(figure, _handles(rows, colour))
     return figure
 
 

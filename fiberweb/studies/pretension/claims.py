@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from fiberweb.claims.judge import (
-    ALLOWANCE,
-    Answer,
-    Evidence,
-    NotComputed,
-    check,
-    rises,
-)
+from fiberweb.claims.judge import ALLOWANCE, Answer, Evidence, NotComputed, check, rises
 from fiberweb.claims.rows import complete, falls
 
 PEAK_TENSION = 1.0  # N

@@ -1,11 +1,6 @@
-"""Fig. 3: capacities over pretension, at the best force for memory of each spacing.
-
-Drawing only: every number comes from the tables.
-"""
+"""Fig. 3: capacities over pretension, at the best force for memory of each spacing."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,7 +11,8 @@ PAPERS_LEAST = 0.01  # N
 ASIDE = 1.2  # points from one spacing to the next
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the pretension study, as `fiberweb.figures` says.
 
     Args:
@@ -26,20 +22,18 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     rows = plots.rows_of(given["pretension"], "pretension", setup)
     baselines = given["ridge_baselines"]
     colour = plots.colours(rows["spacing_m"])
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 76.0)
-        axes = figure.subplots(1, 2)
-        for ax, letter, name in zip(axes, "ab", plots.TOTALS):
-            _tensions(ax, sorted(rows["tension_N"].unique()))
-            plots.lines(ax, rows, "tension_N", name, colour, ASIDE)
-            plots.scale(ax, rows, baselines, name)
-            plots.baselines(ax, baselines, name)
-            title = f"{plots.TOTALS[name]} over pretension ({setup} setup)"
-            ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
-        plots.spacing_bar(figure, axes, colour)
-        handles = plots.key(rows)
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 76.0)
+    axes = figure.subplots(1, 2)
+    for ax, letter, name in zip(axes, "ab", plots.TOTALS):
+        _tensions(ax, sorted(rows["tension_N"].unique()))
+        plots.lines(ax, rows, "tension_N", name, colour, ASIDE)
+        plots.scale(ax, rows, baselines, name)
+        plots.baselines(ax, baselines, name)
+        title = f"{plots.TOTALS[name]} over pretension ({setup} setup)"
+        ax.set_title(style.lettered(letter, title), loc="left")
+    plots.spacing_bar(figure, axes, colour)
+    handles = plots.key(rows)
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4)
     return figure
 
 

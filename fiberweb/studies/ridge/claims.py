@@ -15,7 +15,6 @@ from fiberweb.claims.judge import (
     Answer,
     Evidence,
     NotComputed,
-    authors_table,
     check,
     inside_range,
     numbers,
@@ -140,15 +139,12 @@ def authors_force_spacing_table(evidence: Evidence) -> Answer:
     """Root mean square of ours less theirs over the points below B = 1 that both tables hold, N,
     spacing and force equal within 0.1 %, inside the range; unstable runs are left out and counted.
     G1 is C_nl, G2 is C_m; beside it stands that of the points beyond, where runs are chaotic."""
-    if evidence.published_tables is None:
-        raise NotComputed
     ridge = evidence.table("ridge")
     ours, theirs = {"G1": ("c_nl", "nonlinearity test"), "G2": ("c_m", "memory test")}[
         evidence.claim["id"]
     ]
-    authors = authors_table(
-        evidence.published_tables / "force_spacing_4x4.csv",
-        ("num_threads", "spacing(mm)", "force_mag(N)", theirs),
+    authors = evidence.authors_table(
+        "force_spacing_4x4.csv", ("num_threads", "spacing(mm)", "force_mag(N)", theirs)
     )
     both = ridge.merge(authors, left_on="n", right_on="num_threads")
     same = np.isclose(1e3 * both["spacing_m"], both["spacing(mm)"], rtol=SAME, atol=0)

@@ -1,11 +1,6 @@
-"""Fig. 2a and b: capacities over force and spacing, over the buckling number, and where C_nl drops.
-
-Drawing only: every number comes from the tables.
-"""
+"""Fig. 2a and b: capacities over force and spacing and over B, and where C_nl drops."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -28,7 +23,8 @@ CLAIMED = (0.8, 1.5)  # B of the onset, claim R2
 BAND = {"color": style.DIVERGING(0.4), "alpha": 0.6, "lw": 0}
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the ridge, as `fiberweb.figures` says; what was not run stays grey.
 
     Args:
@@ -41,23 +37,21 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     baselines = given["ridge_baselines"]
     colour = plots.colours(ridge["spacing_m"])
     size = f"{ridge['n'].iloc[0]}×{ridge['n'].iloc[0]}"
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 138.0)
-        top, bottom = figure.subfigures(2, 1, height_ratios=[64, 74])
-        for ax, letter, name in zip(top.subplots(1, 2), "ab", plots.TOTALS):
-            _map(ax, ridge, onset, baselines, name)
-            _bar(top, ax, baselines, name)
-            title = f"{plots.TOTALS[name]} ({size}, {setup} setup)"
-            ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
-        *axes, last = bottom.subplots(1, 3, width_ratios=[1, 1, 0.6])
-        for ax, letter, name in zip(axes, "cd", plots.TOTALS):
-            _over_buckling(ax, ridge, baselines, name, colour)
-            title = f"{plots.TOTALS[name]} over {plots.BUCKLING}"
-            ax.set_title(rf"$\mathbf{{{letter}}}$   {title}", loc="left")
-        _onset(last, onset, colour)
-        plots.spacing_bar(bottom, [*axes, last], colour)
-        _key(bottom, ridge)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 138.0)
+    top, bottom = figure.subfigures(2, 1, height_ratios=[64, 74])
+    for ax, letter, name in zip(top.subplots(1, 2), "ab", plots.TOTALS):
+        _map(ax, ridge, onset, baselines, name)
+        _bar(top, ax, baselines, name)
+        title = f"{plots.TOTALS[name]} ({size}, {setup} setup)"
+        ax.set_title(style.lettered(letter, title), loc="left")
+    *axes, last = bottom.subplots(1, 3, width_ratios=[1, 1, 0.6])
+    for ax, letter, name in zip(axes, "cd", plots.TOTALS):
+        _over_buckling(ax, ridge, baselines, name, colour)
+        title = f"{plots.TOTALS[name]} over {plots.BUCKLING}"
+        ax.set_title(style.lettered(letter, title), loc="left")
+    _onset(last, onset, colour)
+    plots.spacing_bar(bottom, [*axes, last], colour)
+    _key(bottom, ridge)
     return figure
 
 
@@ -135,7 +129,7 @@ def _onset(ax: Axes, onset: pd.DataFrame, colour: dict) -> None:
     low, high = ax.get_ylim()
     ax.set_ylim(min(low, 0.45), max(high, 2.2))  # room for ticks about 1
     plots.logarithmic(ax.yaxis)
-    ax.set_title(rf"$\mathbf{{e}}$   Drop of {plots.TOTALS['c_nl']}", loc="left")
+    ax.set_title(style.lettered("e", f"Drop of {plots.TOTALS['c_nl']}"), loc="left")
 
 
 def _key(part: SubFigure, ridge: pd.DataFrame) -> None:

@@ -1,11 +1,6 @@
-"""Capacities over seeds of the input and over the ridge penalty.
-
-Drawing only: every number comes from the tables.
-"""
+"""Capacities over seeds of the input and over the ridge penalty."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -22,7 +17,8 @@ CAP = 2.5  # points: wider than the markers, or small bars would not show
 LINE = 0.06  # height of a line of text, in capacity
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw C_nl and C_m of each seed, and over the ridge penalty, as `fiberweb.figures` says.
 
     Args:
@@ -33,16 +29,14 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     alphas = plots.rows_of(given["robustness_alpha"], "robustness_alpha", setup)
     baselines = given["robustness_baselines"]
     colour = plots.colours(seeds["n"])
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 122.0)
-        rows = figure.subfigures(2, 1)
-        style.letter(rows[0], "a", f"Seeds of the input ({setup} setup)")
-        _panels(rows[0], _seeds, seeds, colour, baselines)
-        style.letter(rows[1], "b", f"Ridge penalty, first seed ({setup} setup)")
-        _panels(rows[1], _alphas, alphas, colour, baselines)
-        unstable = any((frame["status"] == "unstable").any() for frame in (seeds, alphas))
-        panels.key(figure, _handles(colour, unstable))
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 122.0)
+    rows = figure.subfigures(2, 1)
+    style.letter(rows[0], "a", f"Seeds of the input ({setup} setup)")
+    _panels(rows[0], _seeds, seeds, colour, baselines)
+    style.letter(rows[1], "b", f"Ridge penalty, first seed ({setup} setup)")
+    _panels(rows[1], _alphas, alphas, colour, baselines)
+    unstable = any((frame["status"] == "unstable").any() for frame in (seeds, alphas))
+    panels.key(figure, _handles(colour, unstable))
     return figure
 
 
@@ -100,7 +94,7 @@ def _alphas(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
             frame["alpha"], frame[name], frame[f"{name}_se"], color=colour[n], lw=0.9,
             elinewidth=0.7, capsize=CAP, **TEST,
         )  # fmt: skip
-        style.mark_unstable(ax, list(frame.loc[frame["status"] == "unstable", "alpha"]))
+        plots.mark_unstable(ax, frame, "alpha")
     ax.set(xscale="log", xlabel=r"Ridge penalty $\alpha$")
     ax.set_xticks(np.sort(rows["alpha"].unique()))
     ax.minorticks_off()

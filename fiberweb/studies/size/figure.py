@@ -1,12 +1,8 @@
-"""Fig. 2c: capacities over the size of the network, at the best force of each spacing.
-
-Drawing only: every number comes from the tables.
-"""
+"""Fig. 2c: capacities over the size of the network, at the best force of each spacing."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -23,7 +19,8 @@ MARKERS = {  # the shorter step lies upon the longer one
 ASIDE = 0.9  # points from one spacing to the next
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the size study, as `fiberweb.figures` says.
 
     C_nl is drawn at the forces chosen for C_nl and C_m at those chosen for C_m: over N, one line a
@@ -40,23 +37,21 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     baselines = given["ridge_baselines"]
     colour = plots.colours(size["spacing_m"])
     letters = iter("abcdefgh")
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 76.0 * (over_size + len(twice)))
-        parts = iter(figure.subfigures(over_size + len(twice), 1, squeeze=False)[:, 0])
-        if over_size:
-            part = next(parts)
-            rows = size.drop_duplicates(RUN, keep="last")
-            axes = part.subplots(1, 2)
-            for ax, name in zip(axes, plots.TOTALS, strict=True):
-                _over_size(ax, _chosen_for(name, rows), name, colour)
-            plots.spacing_bar(part, axes, colour)
-            _finish(part, baselines, rows, {}, setup, letters)
-        for n in twice:
-            part, rows = next(parts), repeated[repeated["n"] == n]
-            for ax, name in zip(part.subplots(1, 2), plots.TOTALS, strict=True):
-                handles = _over_spacing(ax, _chosen_for(name, rows), name)
-            _finish(part, baselines, rows, handles, f"{n}×{n}, {setup}", letters)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 76.0 * (over_size + len(twice)))
+    parts = iter(figure.subfigures(over_size + len(twice), 1, squeeze=False)[:, 0])
+    if over_size:
+        part = next(parts)
+        rows = size.drop_duplicates(RUN, keep="last")
+        axes = part.subplots(1, 2)
+        for ax, name in zip(axes, plots.TOTALS, strict=True):
+            _over_size(ax, _chosen_for(name, rows), name, colour)
+        plots.spacing_bar(part, axes, colour)
+        _finish(part, baselines, rows, {}, setup, letters)
+    for n in twice:
+        part, rows = next(parts), repeated[repeated["n"] == n]
+        for ax, name in zip(part.subplots(1, 2), plots.TOTALS, strict=True):
+            handles = _over_spacing(ax, _chosen_for(name, rows), name)
+        _finish(part, baselines, rows, handles, f"{n}×{n}, {setup}", letters)
     return figure
 
 
@@ -95,7 +90,7 @@ def _finish(
     for ax, name in zip(part.axes, plots.TOTALS):
         plots.scale(ax, rows, baselines, name)
         title = f"{plots.TOTALS[name]} at the best force for it ({of} setup)"
-        ax.set_title(rf"$\mathbf{{{next(letters)}}}$   {title}", loc="left")
+        ax.set_title(style.lettered(next(letters), title), loc="left")
         plots.baselines(ax, baselines, name)
     handles = handles | plots.key(rows)
     part.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)

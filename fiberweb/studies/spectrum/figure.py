@@ -1,13 +1,9 @@
 """Total information-processing capacity by degree and by delay, over size and over force, and
-beside what bounds it.
-
-Drawing only: every number comes from the tables.
-"""
+beside what bounds it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -36,7 +32,8 @@ BAR = 0.7
 ROOM = 1.06  # of the scale above what is tallest
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the study, as `fiberweb.figures` says.
 
     Args:
@@ -48,30 +45,28 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     every = pd.concat([rows, *alone.values()])
     colours = {"degree": plots.colours(every["degree"].dropna()), "delay_s": _delays(every)}
     letters = iter("abcdef")
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 112.0)
-        axes = figure.subplots(2, 3, width_ratios=[1.25, 1.25, 1.0])
-        for line, (choice, varied) in zip(axes, CHOICES.items(), strict=True):
-            mine = rows[rows["force_choice"] == choice]
-            bodies = dict(list(mine.groupby(varied)))
-            shown = bodies | (alone if varied == "n" else {})
-            n = mine["n"].iloc[0]
-            of = f" ({setup} setup)" if varied == "n" else f", {n}×{n}"
-            for ax, by in zip(line, colours, strict=False):
-                _stacks(ax, shown, by, colours[by])
-                ax.set(ylim=(0.0, ROOM * every[["ipc", "ipc_high"]].max().max()))
-            _against(line[2], pd.concat([body.iloc[:1] for body in bodies.values()]))
-            for ax, many, title in zip(line, (shown, shown, bodies), TITLES, strict=True):
-                _scale(ax, varied, many)
-                panels.letter(ax, next(letters), title + (of if ax is not line[2] else ""))
-            line[0].set_ylabel("Processing capacity")
-            line[2].set_ylabel("Capacity, or count")
-        for column, (by, (name, unit)) in zip(axes.T, SPLITS.items(), strict=False):
-            fields = {round(unit * value, 1): colour for value, colour in colours[by].items()}
-            place = {"location": "bottom", "pad": 0.02, "fraction": 0.03, "aspect": 40}
-            plots.colour_bar(figure, list(column), fields, name, **place)
-        panels.key(figure, _handles(rows))
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 112.0)
+    axes = figure.subplots(2, 3, width_ratios=[1.25, 1.25, 1.0])
+    for line, (choice, varied) in zip(axes, CHOICES.items(), strict=True):
+        mine = rows[rows["force_choice"] == choice]
+        bodies = dict(list(mine.groupby(varied)))
+        shown = bodies | (alone if varied == "n" else {})
+        n = mine["n"].iloc[0]
+        of = f" ({setup} setup)" if varied == "n" else f", {n}×{n}"
+        for ax, by in zip(line, colours, strict=False):
+            _stacks(ax, shown, by, colours[by])
+            ax.set(ylim=(0.0, ROOM * every[["ipc", "ipc_high"]].max().max()))
+        _against(line[2], pd.concat([body.iloc[:1] for body in bodies.values()]))
+        for ax, many, title in zip(line, (shown, shown, bodies), TITLES, strict=True):
+            _scale(ax, varied, many)
+            panels.letter(ax, next(letters), title + (of if ax is not line[2] else ""))
+        line[0].set_ylabel("Processing capacity")
+        line[2].set_ylabel("Capacity, or count")
+    for column, (by, (name, unit)) in zip(axes.T, SPLITS.items(), strict=False):
+        fields = {round(unit * value, 1): colour for value, colour in colours[by].items()}
+        place = {"location": "bottom", "pad": 0.02, "fraction": 0.03, "aspect": 40}
+        plots.colour_bar(figure, list(column), fields, name, **place)
+    panels.key(figure, _handles(rows))
     return figure
 
 
@@ -132,6 +127,4 @@ def _handles(rows: pd.DataFrame) -> dict[str, Line2D]:
         if rows[name].notna().any()
     }
     handles["95 % interval"] = Line2D([], [], marker="|", ms=7, mew=0.9, ls="", color=style.INK)
-    if (rows["status"] != "ok").any():
-        handles["unstable run"] = Line2D([], [], **style.UNSTABLE)
-    return handles
+    return handles | plots.unstable_key((rows["status"] != "ok").any())

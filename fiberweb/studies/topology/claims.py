@@ -12,7 +12,6 @@ from fiberweb.claims.judge import (
     Answer,
     Evidence,
     NotComputed,
-    authors_table,
     check,
     inside_range,
     network,
@@ -106,12 +105,10 @@ def polygons_stay_below(evidence: Evidence) -> Answer:
 def authors_density_table(evidence: Evidence) -> Answer:
     """Largest |C_m - theirs| and |C_nl - theirs| over the crosshatches that both tables hold, with
     spacing and force equal within 1 %, inside the range."""
-    if evidence.published_tables is None:
-        raise NotComputed
     ours = evidence.table("topology")
     ours = ours[ours["topology"] == "crosshatch"]
-    theirs = authors_table(
-        evidence.published_tables / "density_500mm.csv",
+    theirs = evidence.authors_table(
+        "density_500mm.csv",
         ("num_threads", "spacing(mm)", "force_mag(N)", "nonlinearity", "memory"),
     )
     both = ours.merge(theirs, left_on="n", right_on="num_threads")

@@ -1,17 +1,12 @@
-"""Fig. 1: capacities of crosshatch and polygonal networks, and example computations.
-
-Drawing only: every number comes from the tables and the traces.
-"""
+"""Fig. 1: capacities of crosshatch and polygonal networks, and example computations."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
@@ -26,7 +21,6 @@ DRAWN = {"crosshatch": (2, 4, 8), "polygon": (6, 8, 12)}  # schematics, where th
 TITLES = {"crosshatch": "Crosshatch networks", "polygon": "Polygonal networks"}
 TRACE_SECONDS = 5.0  # of the test part: some 25 knots of the input, still resolved in a third
 CAPACITY_AXIS = (-0.03, 1.03)  # c < 0 counts as 0 in the totals and falls below this axis
-DRIVEN = r"$\updownarrow$"
 TRAINING = {"color": style.GREY, "marker": "o", "mfc": "white", "mew": 0.7, "ms": 3, "ls": ""}
 # what a certificate found a capacity to follow, at the foot of its axes
 FOLLOWS = {"filter": "f", "rounding": "r", "mesh": "m", "step": "t", "shear": "s", "chaos": "c"}
@@ -34,7 +28,8 @@ FOLLOWS = {"filter": "f", "rounding": "r", "mesh": "m", "step": "t", "shear": "s
 TEST = {"marker": "o", "ms": 2.6, "elinewidth": 0.7, "capsize": 2.5, "capthick": 0.7}
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw Fig. 1, as `fiberweb.figures` says.
 
     Args:
@@ -51,25 +46,23 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
         traces = None  # an unstable run has no prediction to show
     present = [name for name in TITLES if (table["topology"] == name).any()]
     heights = [30.0] + [46.0] * len(present) + ([54.0] if traces is not None else [])
-    with style.applied():
-        figure = style.figure(style.DOUBLE, sum(heights))
-        rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
-        letters = iter("abcd")
-        colour = plots.colours(table["n"])
-        style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
-        _networks(rows[0], table, setup)
-        for row, topology in zip(rows[1:], present, strict=False):
-            style.letter(row, next(letters), f"{TITLES[topology]} ({setup} setup)")
-            runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
-            _capacities(row, runs, points, baselines, colour)
-        panels.key_beside_title(rows[1], _marks(table))
-        if followed := _followed_marks(table):
-            panels.key_beside_title(rows[0], followed)
-        if traces is not None:
-            title = f"Example computations{_network_name(traces)} ({setup} setup)"
-            style.letter(rows[-1], next(letters), title)
-            _traces(rows[-1], traces)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, sum(heights))
+    rows = list(np.atleast_1d(figure.subfigures(len(heights), 1, height_ratios=heights)))
+    letters = iter("abcd")
+    colour = plots.colours(table["n"])
+    style.letter(rows[0], next(letters), f"Networks ({setup} setup)")
+    _networks(rows[0], table, setup)
+    for row, topology in zip(rows[1:], present, strict=False):
+        style.letter(row, next(letters), f"{TITLES[topology]} ({setup} setup)")
+        runs, points = (frame[frame["topology"] == topology] for frame in (table, curves))
+        _capacities(row, runs, points, baselines, colour)
+    panels.key_beside_title(rows[1], _marks(table))
+    if followed := _followed_marks(table):
+        panels.key_beside_title(rows[0], followed)
+    if traces is not None:
+        title = f"Example computations{_network_name(traces)} ({setup} setup)"
+        style.letter(rows[-1], next(letters), title)
+        _traces(rows[-1], traces)
     return figure
 
 
@@ -85,7 +78,7 @@ def _networks(part: SubFigure, table: pd.DataFrame, setup: str) -> None:
         _schematic(ax, network, readouts=index == 0)
         ax.set_title(_label(topology, n))
     handles = [
-        Line2D([], [], color=style.DRIVE, marker=DRIVEN, ls="", ms=6),
+        Line2D([], [], color=style.DRIVE, marker=panels.DRIVEN, ls="", ms=6),
         Line2D([], [], color=style.INK, marker="o", ls="", ms=2.4),
         Line2D([], [], color=style.INK, marker="o", mfc="white", mew=0.6, ls="", ms=2.6),
     ]
@@ -101,20 +94,14 @@ def _network(topology: str, n: int, setup: str) -> Network:
 
 
 def _schematic(ax: Axes, network: Network, readouts: bool) -> None:
-    ax.add_collection(LineCollection(network.fibres, colors=style.GREY, linewidths=0.5))
-    near, far = network.fibres[network.driven_fibre]
-    driven = near + (far - near) * network.driven_distance / np.linalg.norm(far - near)
     if readouts:
         middle = np.concatenate(
             [_midpoints(network, fibre) for fibre in range(len(network.fibres))]
         )
         ax.plot(*middle.T, "o", ms=2.6, mfc="white", mec=style.INK, mew=0.6, zorder=4)
         ax.plot(*network.crossings.T, "o", ms=2.4, color=style.INK, zorder=4)
-    ax.plot(*driven, marker=DRIVEN, ms=8, color=style.DRIVE, zorder=3)
     centre = 0.5 if network.topology == "crosshatch" else 0.0
-    limits = (centre - 0.52, centre + 0.52)
-    ax.set(aspect="equal", xlim=limits, ylim=limits)
-    ax.axis("off")
+    panels.network(ax, network, style.GREY, (centre - 0.52, centre + 0.52))
 
 
 def _midpoints(network: Network, fibre: int) -> np.ndarray:
@@ -126,11 +113,7 @@ def _midpoints(network: Network, fibre: int) -> np.ndarray:
 
 
 def _capacities(
-    part: SubFigure,
-    runs: pd.DataFrame,
-    points: pd.DataFrame,
-    baselines: pd.DataFrame,
-    colour: dict,
+    part: SubFigure, runs: pd.DataFrame, points: pd.DataFrame, baselines: pd.DataFrame, colour: dict
 ) -> None:
     """c over order and over lag for each N, then the totals over N."""
     by_order, by_lag, nonlinear, memory = part.subplots(1, 4, width_ratios=[1.15, 1.15, 1, 1])
@@ -190,7 +173,7 @@ def _total(ax: Axes, runs: pd.DataFrame, name: str, colour: dict) -> None:
         )  # fmt: skip
         foot = run.n, 0.01
         ax.text(*foot, _followed(run, name), transform=ax.get_xaxis_transform(), ha="center")
-    style.mark_unstable(ax, list(runs.loc[runs["status"] == "unstable", "n"]))
+    plots.mark_unstable(ax, runs, "n")
     ax.margins(x=0.08)
 
 

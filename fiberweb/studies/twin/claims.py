@@ -40,5 +40,4 @@ def _judged(evidence: Evidence, rule: Callable[[pd.DataFrame], observations.Obse
             beside.append(f"one frame in {step}: {rule(scores).answer.text}")
         except NotComputed as reason:
             beside.append(f"one frame in {step}: {reason}")
-    text = f"{verdict.text} ({'; '.join(beside)})" if beside else verdict.text
-    return Answer(text, verdict.holds)
+    return verdict.with_remarks(beside)

@@ -1,12 +1,8 @@
-"""Fig. 5: capacities of the experiment's twin over the motor angle, by target and by group.
-
-Drawing only: every number comes from the tables.
-"""
+"""Fig. 5: capacities of the experiment's twin over the motor angle, by target and by group."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -32,7 +28,8 @@ RECALL_MARK = {"marker": r"$\uparrow$", "color": style.INK, "ms": 7, "mew": 0.3,
 INPUT_LINE = {"u": (0, (4, 2)), "powers": (0, (1, 1.5))}
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw Fig. 5, as `fiberweb.figures` says.
 
     Args:
@@ -40,13 +37,11 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
     """
     rows, curves = (plots.rows_of(given[name], name, setup) for name in ("twin", "twin_curves"))
     curves = curves[curves["verdict"]]
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 172.0)
-        top, middle, bottom = figure.subfigures(3, 1, height_ratios=[54, 60, 58])
-        _over_angle(top, rows, SCORINGS[setup])
-        _by_target(middle, curves)
-        _by_group(bottom, rows)
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 172.0)
+    top, middle, bottom = figure.subfigures(3, 1, height_ratios=[54, 60, 58])
+    _over_angle(top, rows, SCORINGS[setup])
+    _by_target(middle, curves)
+    _by_group(bottom, rows)
     return figure
 
 
@@ -106,8 +101,8 @@ def _by_target(part: SubFigure, curves: pd.DataFrame) -> None:
     panels.key(
         part,
         {
-            "$u$ alone": _input_line("u"),
-            "$u\\,…\\,u^3$ alone": _input_line("powers"),
+            "$u$ alone": Line2D([], [], **_look("u")),
+            "$u\\,…\\,u^3$ alone": Line2D([], [], **_look("powers")),
             "the paper's 6×6 at large angles: $c$ above": Line2D([], [], **RECALL_MARK),
         },
     )
@@ -130,10 +125,6 @@ def _curves(ax: Axes, shown: pd.DataFrame, colour: dict, marker: str) -> None:
 
 def _look(name: str) -> dict:
     return plots.BASELINE_LINE | {"ls": INPUT_LINE[name], "lw": 0.9}
-
-
-def _input_line(name: str) -> Line2D:
-    return Line2D([], [], **_look(name))
 
 
 def _by_group(part: SubFigure, rows: pd.DataFrame) -> None:

@@ -75,7 +75,11 @@ def memory_rises(scores: pd.DataFrame) -> Observed:
     early = large[large.index <= late[6].index[0]]
     gain, rise = small.iloc[-1] - small.iloc[0], early.iloc[-1] - early.iloc[0]
     end = large.iloc[-1] - small.iloc[-1]
-    moves = [f"{n}x{n} has no plateau" for n, c in late.items() if _moves(c)]
+    moves = [
+        f"{n}x{n} has no plateau"
+        for n, c in late.items()
+        if (c - c.iloc[0]).abs().max() > ALLOWANCE
+    ]
     parts = {
         "4x4 rises modestly": _unless(
             ALLOWANCE < gain <= SUBSTANTIAL, f"4x4 changes by {gain:+.2f}"
@@ -208,8 +212,3 @@ def _input(scores: pd.DataFrame, column: str) -> str:
 
 def _unless(holds: bool, reason: str) -> str:
     return "" if holds else reason
-
-
-def _moves(c: pd.Series) -> bool:
-    """Whether any value is further from the first than the allowance."""
-    return bool((c - c.iloc[0]).abs().max() > ALLOWANCE)

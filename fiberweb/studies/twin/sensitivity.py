@@ -1,11 +1,6 @@
-"""Which observations of the experiment hold, over what the paper does not report of it.
-
-Drawing only: every number comes from the tables.
-"""
+"""Which observations of the experiment hold, over what the paper does not report of it."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -51,7 +46,8 @@ GAP = 0.6  # between parameters
 NAMES = 23.0  # points above panel a for the names of the parameters
 
 
-def draw(given: dict, setup: str, path: str | Path) -> Figure:
+@style.drawing
+def draw(given: dict, setup: str) -> Figure:
     """Draw the panel, as `fiberweb.figures` says.
 
     Args:
@@ -63,18 +59,16 @@ def draw(given: dict, setup: str, path: str | Path) -> Figure:
         for name in ("twin_sensitivity", "twin_observations")
     )
     places = _places(rows)
-    with style.applied():
-        figure = style.figure(style.DOUBLE, 158.0)
-        axes = figure.subplots(3, 1, sharex=True, height_ratios=[40, 40, 58])
-        for ax, letter, name, pad in zip(axes, "ab", plots.TOTALS, (NAMES, 3.0), strict=False):
-            _totals(ax, rows, places, name)
-            title = f"{panels.CAPACITIES[name]} of the twin, one parameter changed at a time"
-            panels.letter(ax, letter, title, pad)
-        _verdicts(axes[2], verdicts, places)
-        panels.letter(axes[2], "c", f"The paper's observations ({setup} setup)")
-        _labels(axes[0], axes[2], places)
-        panels.key(figure, _handles(rows))
-        style.save(figure, path)
+    figure = style.figure(style.DOUBLE, 158.0)
+    axes = figure.subplots(3, 1, sharex=True, height_ratios=[40, 40, 58])
+    for ax, letter, name, pad in zip(axes, "ab", plots.TOTALS, (NAMES, 3.0), strict=False):
+        _totals(ax, rows, places, name)
+        title = f"{panels.CAPACITIES[name]} of the twin, one parameter changed at a time"
+        panels.letter(ax, letter, title, pad)
+    _verdicts(axes[2], verdicts, places)
+    panels.letter(axes[2], "c", f"The paper's observations ({setup} setup)")
+    _labels(axes[0], axes[2], places)
+    panels.key(figure, _handles(rows))
     return figure
 
 
@@ -106,7 +100,7 @@ def _totals(ax: Axes, rows: pd.DataFrame, places: dict, name: str) -> None:
         stable = frame[frame["status"] == "ok"]
         look = {"mfc": colour[n] if fill[angle] else "white", "mew": 0.8}
         plots.points(ax, stable, "at", name, color=colour[n], marker="o", ms=3.4, ls="", **look)
-        style.mark_unstable(ax, list(frame.loc[frame["status"] == "unstable", "at"]))
+        plots.mark_unstable(ax, frame, "at")
     alone = rows[rows["readouts"].isin(["u", "powers"]) & (rows["parameter"] == "none")]
     baselines = alone.groupby("readouts")[["c_nl", "c_m"]].mean().reset_index(names="readout")
     highest = plots.top(markers, baselines, name) + 0.03  # a mark at the end is whole

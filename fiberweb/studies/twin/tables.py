@@ -30,9 +30,7 @@ CURVE_COLUMNS = (*FILM_COLUMNS, "readouts", "target", "at", "c", "run")
 
 
 def by_readouts(
-    response_paths: Sequence[str | Path],
-    cameras: Sequence[Mapping],
-    scoring: Mapping,
+    response_paths: Sequence[str | Path], cameras: Sequence[Mapping], scoring: Mapping
 ) -> pd.DataFrame:
     """One row for each run, reading of the frame rate and set of readouts.
 
@@ -54,7 +52,8 @@ def by_readouts(
             if _known(film, name):
                 of_film = _score(film, x, scoring)
                 scored = {scalar: getattr(of_film, scalar) for scalar in SCALARS}
-                scored["recall_500ms"] = _at(of_film.lags, of_film.memory, RECALL)
+                nearest = np.argmin(np.abs(of_film.lags - RECALL))
+                scored["recall_500ms"] = float(of_film.memory[nearest])
             records.append(row | {"readouts": name, "n_signals": x.shape[1]} | scored)
     return tables.ordered(pd.DataFrame(records, columns=list(COLUMNS)))
 
@@ -143,8 +142,3 @@ def _known(film: xr.Dataset, readouts: str) -> bool:
 def _score(film: xr.Dataset, x: np.ndarray, scoring: Mapping) -> capacity.Capacity:
     u, rate = film["input"].values, recording.sample_rate(film)
     return capacity.score_arrays(u, x, rate, **scoring)
-
-
-def _at(lags: np.ndarray, c: np.ndarray, lag: float) -> float:
-    """c at the lag (s) that is nearest to one."""
-    return float(c[np.argmin(np.abs(lags - lag))])

@@ -1,0 +1,11 @@
+"""The tables of one job of the study of accuracy."""
+
+from logs import to_log
+
+from fiberweb import products
+
+to_log(snakemake)
+given = [products.read(path) for path in snakemake.input.tables]
+for (make, options, threaded), path in zip(snakemake.params.calls, snakemake.output, strict=True):
+    workers = {"workers": snakemake.threads} if threaded else {}
+    products.write(products.function(make)(*given, **options, **workers), path)
