@@ -250,7 +250,7 @@ def advance(
             if due and filtered:
                 passes.copy_velocities(state, before)
             if damped:
-                viscous.before_x[:], viscous.before_y[:] = vx, vy
+                energy.keep(vx, vy, viscous.before_x, viscous.before_y)
                 viscous.before_spin[: omega.shape[0]] = omega
             passes.velocity_pass(*kick_x, rods.decay)
             passes.velocity_pass(*kick_y, rods.decay)

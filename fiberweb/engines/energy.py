@@ -26,7 +26,7 @@ class Ledger(NamedTuple):
     total: np.ndarray  # work done and dissipated so far, (2,), J
     mass: np.ndarray  # (n,), kg
     damping: float  # 1/s
-    joints: np.ndarray  # nodes of each, (joints, 2)
+    joints: np.ndarray  # nodes of each that gives, (joints, 2)
     joint_stiffness: np.ndarray  # N/m, (joints,)
     joint_damping: np.ndarray  # N s/m, (joints,)
 
@@ -40,8 +40,9 @@ def build_ledger(
     mass[interleaving.place[layout.at[mesh.moved]]] = 0.0
     # unsigned, since Numba looks for negative indices at every access otherwise
     joints = interleaving.place[layout.joints].astype(np.uint64)
-    rate = mesh.scene.damping
-    return Ledger(np.zeros(2), mass, rate, joints, mesh.joint_stiffness, mesh.joint_damping)
+    gives = np.isfinite(mesh.joint_stiffness)  # nodes that are one point neither store nor take
+    coupling = mesh.joint_stiffness[gives], mesh.joint_damping[gives]
+    return Ledger(np.zeros(2), mass, mesh.scene.damping, joints[gives], *coupling)
 
 
 @kernel
@@ -136,6 +137,25 @@ def squared_speed(vx, vy, mass):
 
 
 @kernel
+def keep(vx, vy, kept_x, kept_y):
+    """Copy velocities; a slice of an array would be looked at for overlaps first."""
+    for i in range(vx.shape[0]):
+        kept_x[i] = vx[i]
+        kept_y[i] = vy[i]
+
+
+@summing
+def average(mean_x, mean_y, vx, vy, mass):
+    """Make kept velocities the mean of them and of these; sum of m v^2 of the mean (J)."""
+    total = 0.0
+    for i in range(vx.shape[0]):
+        mean_x[i] = 0.5 * (mean_x[i] + vx[i])
+        mean_y[i] = 0.5 * (mean_y[i] + vy[i])
+        total += mass[i] * (mean_x[i] * mean_x[i] + mean_y[i] * mean_y[i])
+    return total
+
+
+@kernel
 def joint_power(ledger, vx, vy):
     """Power that the crossings' dampers take (W)."""
     joints, damping = ledger.joints, ledger.joint_damping
@@ -148,11 +168,10 @@ def joint_power(ledger, vx, vy):
 
 @kernel
 def joint_energy(ledger, x, y):
-    """Energy of the crossings' springs (J); none where the nodes are one point."""
+    """Energy of the crossings' springs (J)."""
     joints, stiffness = ledger.joints, ledger.joint_stiffness
     total = 0.0
     for j in range(joints.shape[0]):
         a, b = joints[j, 0], joints[j, 1]
-        if stiffness[j] < np.inf:
-            total += 0.5 * stiffness[j] * ((x[b] - x[a]) ** 2 + (y[b] - y[a]) ** 2)
+        total += 0.5 * stiffness[j] * ((x[b] - x[a]) ** 2 + (y[b] - y[a]) ** 2)
     return total

@@ -209,9 +209,9 @@ def advance(
             crossings.gather_groups(groups, before, x, y, vx, vy)
             due = energy.steps_due(k - start, every, per_sample)
             if due:
-                mean_x[:], mean_y[:] = vx, vy
+                energy.keep(vx, vy, mean_x, mean_y)
             if damped:
-                viscous.before_x[:], viscous.before_y[:] = vx, vy
+                energy.keep(vx, vy, viscous.before_x, viscous.before_y)
             if carried:  # before the kick, which decays and drifts them
                 after = (k + 1.5) * step
                 following = stepping.drive_value(forcing.drive, forcing.drive_rate, after)
@@ -248,9 +248,8 @@ def advance(
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
             if due:  # at the mean velocity, of which times the step a force's work is
-                mean_x[:], mean_y[:] = 0.5 * (mean_x + vx), 0.5 * (mean_y + vy)
-                lost = ledger.damping * energy.squared_speed(mean_x, mean_y, ledger.mass)
-                lost += energy.joint_power(ledger, mean_x, mean_y)
+                squared = energy.average(mean_x, mean_y, vx, vy, ledger.mass)
+                lost = ledger.damping * squared + energy.joint_power(ledger, mean_x, mean_y)
                 if damped:
                     lost += viscosity.edge_power(*viscous_power)
                 energy.enter_dissipation(ledger, due * step, lost)
