@@ -13,8 +13,8 @@ PACKAGES = ("snakemake", "numpy", "scipy", "numba", "pyelastica", "xarray", "pan
 
 
 def add_call(results: str | Path) -> None:
-    """Add one call to <results>/benchmarks/provenance.json."""
-    path = Path(results) / "benchmarks" / "provenance.json"
+    """Add one call to <results>/provenance.json."""
+    path = Path(results) / "provenance.json"
     changes = _git("status", "--porcelain")
     call = {
         "commit": _git("rev-parse", "HEAD"),

@@ -1,13 +1,16 @@
-"""CPU time of a job by what it is spent on, for the last line of the job's log."""
+"""CPU time of a job by what it is spent on, and its memory, for the last line of the job's log."""
 
 from __future__ import annotations
 
 import re
+import resource
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from time import process_time
 
-TOOK = re.compile(r"^took ((?:\w+ \d+\.\d+ s(?:, )?)+)$", re.MULTILINE)
+TOOK = re.compile(r"^took (.+), at most \d+ MB$", re.MULTILINE)
+RSS_UNIT = 1 if sys.platform == "darwin" else 1024  # bytes
 spent: dict[str, float] = {}  # of this process, s
 
 
@@ -22,9 +25,11 @@ def part(name: str) -> Iterator[None]:
 
 
 def line() -> str:
-    """What this process has spent so far: on each part, and on the rest."""
+    """What this process has spent so far, on each part and on the rest, and its largest memory."""
     parts = spent | {"rest": process_time() - sum(spent.values())}
-    return "took " + ", ".join(f"{name} {seconds:.3f} s" for name, seconds in parts.items())
+    took = ", ".join(f"{name} {seconds:.3f} s" for name, seconds in parts.items())
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * RSS_UNIT
+    return f"took {took}, at most {memory / 1e6:.0f} MB"
 
 
 def read(log: str) -> dict[str, float]:

@@ -8,14 +8,14 @@ from fiberweb.provenance import add_call
 def test_calls_are_added(tmp_path):
     add_call(tmp_path)
     add_call(tmp_path)
-    calls = json.loads((tmp_path / "benchmarks" / "provenance.json").read_text())
+    calls = json.loads((tmp_path / "provenance.json").read_text())
     assert len(calls) == 2
     assert calls[0]["versions"]["numba"]
 
 
 def test_a_broken_list_is_set_aside_with_a_sentence(tmp_path, capsys):
     add_call(tmp_path)
-    path = tmp_path / "benchmarks" / "provenance.json"
+    path = tmp_path / "provenance.json"
     path.write_text(path.read_text()[:100])
     add_call(tmp_path)
     assert len(json.loads(path.read_text())) == 1
@@ -28,5 +28,5 @@ def test_the_commit_is_that_of_the_code(tmp_path, monkeypatch):
     add_call(tmp_path / "a")
     monkeypatch.chdir(tmp_path)
     add_call(tmp_path / "b")
-    a, b = (json.loads((tmp_path / x / "benchmarks/provenance.json").read_text()) for x in "ab")
+    a, b = (json.loads((tmp_path / x / "provenance.json").read_text()) for x in "ab")
     assert a == b

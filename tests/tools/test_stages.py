@@ -9,14 +9,18 @@ from fiberweb.tools import stages
 def _log(folder, name, text):
     path = folder / "logs" / f"{name}.log"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
+    path.write_text(f"{text}, at most 80 MB\n")
 
 
 def test_each_folder_is_a_stage_and_the_last_row_has_all(tmp_path):
-    _log(tmp_path, "simulate/a", "run a\ntook start 0.500 s, kernel 4.000 s, rest 0.250 s\n")
-    _log(tmp_path, "simulate/b", "took kernel 1.000 s, rest 0.250 s\n")
-    _log(tmp_path, "snakemake", "took rest 5.000 s\n")
-    _log(tmp_path, "figures/killed", "no last line\n")
+    _log(
+        tmp_path,
+        "simulate/a",
+        "run a\ntook start 0.500 s, kernel 4.000 s, rest 0.250 s",
+    )
+    _log(tmp_path, "simulate/b", "took kernel 1.000 s, rest 0.250 s")
+    _log(tmp_path, "snakemake", "took rest 5.000 s")
+    _log(tmp_path, "figures/killed", "no such last line")
     table = stages.stages(tmp_path)
     assert list(table.index) == ["simulate", "snakemake", "all"]
     assert table.loc["simulate", ["jobs", "start", "kernel", "rest"]].tolist() == [2, 0.5, 5.0, 0.5]
@@ -24,7 +28,7 @@ def test_each_folder_is_a_stage_and_the_last_row_has_all(tmp_path):
 
 
 def test_the_share_that_is_not_physics_is_printed(tmp_path, monkeypatch, capsys):
-    _log(tmp_path, "capacity/a", "took start 1.000 s, solve 3.000 s, rest 0.000 s\n")
+    _log(tmp_path, "capacity/a", "took start 1.000 s, solve 3.000 s, rest 0.000 s")
     monkeypatch.setattr("sys.argv", ["stages", str(tmp_path)])
     stages.main()
     assert capsys.readouterr().out.endswith("neither kernel nor solve: 25.0% of the CPU time\n")

@@ -70,7 +70,7 @@ def test_files_cut_short_are_named_and_made_again(tiny):
     for path, content in zip(broken, whole, strict=True):
         # a table in the middle of a line's end, where nobody sees it
         path.write_bytes(content[: content.rindex(b"\n", 0, -1) + 1])
-    calls = out / "benchmarks" / "provenance.json"
+    calls = out / "provenance.json"
     calls.write_text(calls.read_text()[:-40])
     printed = tiny.snakemake(*COMMAND)
     for path in (*broken, calls):

@@ -156,7 +156,7 @@ def test_smoke_writes_everything(smoked):
     assert judged.any() and claims.loc[judged, "value"].notna().all()
     assert claims.loc["T1", "verdict"] == "not computed"  # it is of the 8x8
     assert claims.loc["G1", "verdict"] == "not applicable"
-    assert (out / "benchmarks" / "provenance.json").exists()
+    assert (out / "provenance.json").exists()
     assert all(run in (out / f"logs/simulate/{run}.log").read_text() for run in ran)
     assert not (smoked.folder / "results").exists()  # dry runs of the paper write nothing
 

@@ -23,8 +23,6 @@ for job, tables in ACCURACY.JOBS.items():
             [FILES.table(file, "described") for file in tables],
         log:
             f"<logs>/accuracy/{job}.log",
-        benchmark:
-            f"<benchmarks>/accuracy/{job}.tsv"
         conda:
             "../../envs/environment.yaml"
         # all of them where something is timed, so that nothing else runs beside it

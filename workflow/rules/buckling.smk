@@ -8,8 +8,6 @@ rule animation:
         report(FILES.animations, caption="../report/figure.rst", category="Figures"),
     log:
         "<logs>/figures/animations.log",
-    benchmark:
-        "<benchmarks>/figures/animations.tsv"
     conda:
         "../../envs/environment.yaml"
     params:

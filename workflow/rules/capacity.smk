@@ -8,8 +8,6 @@ rule capacity:
         "<results>/runs/{run}/capacity.nc",
     log:
         "<logs>/capacity/{run}.log",
-    benchmark:
-        "<benchmarks>/capacity/{run}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
@@ -28,8 +26,6 @@ rule certificate:
         "<results>/runs/{run}/certificate.csv",
     log:
         "<logs>/certificate/{run}.log",
-    benchmark:
-        "<benchmarks>/certificate/{run}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:

@@ -15,8 +15,6 @@ rule setup_claims:
         ),
     log:
         "<logs>/claims/{setup}.log",
-    benchmark:
-        "<benchmarks>/claims/{setup}.tsv"
     localrule: True
     conda:
         "../../envs/environment.yaml"
@@ -37,8 +35,6 @@ rule claims:
         report("<results>/tables/claims.csv", caption="../report/claims.rst", category="Claims"),
     log:
         "<logs>/claims/joined.log",
-    benchmark:
-        "<benchmarks>/claims/joined.tsv"
     localrule: True
     conda:
         "../../envs/environment.yaml"

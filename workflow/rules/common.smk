@@ -70,7 +70,6 @@ for broken in CUT_SHORT.values():
 pathvars:
     results=RESULTS,
     logs=f"{RESULTS}/logs",
-    benchmarks=f"{RESULTS}/benchmarks",
 
 
 wildcard_constraints:

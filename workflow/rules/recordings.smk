@@ -15,8 +15,6 @@ rule recording:
         sanity="<results>/recordings/{recording}/sanity.csv",
     log:
         "<logs>/recordings/{recording}.log",
-    benchmark:
-        "<benchmarks>/recordings/{recording}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
@@ -43,8 +41,6 @@ rule card:
         pdf="<results>/recordings/{recording}/card.pdf",
     log:
         "<logs>/recordings/{recording}-card.log",
-    benchmark:
-        "<benchmarks>/recordings/{recording}-card.tsv"
     conda:
         "../../envs/environment.yaml"
     params:

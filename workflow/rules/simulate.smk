@@ -8,8 +8,6 @@ rule warmup:
         touch("<results>/warmup/{engine}.done"),
     log:
         "<logs>/warmup/{engine}.log",
-    benchmark:
-        "<benchmarks>/warmup/{engine}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
@@ -28,8 +26,6 @@ rule simulate:
         "<results>/runs/{run}/response.nc",
     log:
         "<logs>/simulate/{run}.log",
-    benchmark:
-        "<benchmarks>/simulate/{run}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:

@@ -9,8 +9,6 @@ rule table:
         "<results>/tables/{setup}/{table}",
     log:
         "<logs>/tables/{setup}-{table}.log",
-    benchmark:
-        "<benchmarks>/tables/{setup}-{table}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
@@ -31,8 +29,6 @@ checkpoint ridge_best:
         "<results>/tables/{setup}/ridge_best.csv",
     log:
         "<logs>/tables/{setup}-ridge_best.csv.log",
-    benchmark:
-        "<benchmarks>/tables/{setup}-ridge_best.csv.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
@@ -58,8 +54,6 @@ rule figure:
         pdf="<results>/figures/{figure}{suffix}.pdf",
     log:
         "<logs>/figures/{figure}{suffix}.log",
-    benchmark:
-        "<benchmarks>/figures/{figure}{suffix}.tsv"
     conda:
         "../../envs/environment.yaml"
     params:
