@@ -16,8 +16,6 @@ rotation vector between neighbouring directors.
 
 from __future__ import annotations
 
-import numpy as np
-
 from fiberweb.engines.jit import uncontracted
 
 TINY = 1e-14  # 1/s; their regularisation of omega / |omega|
@@ -48,7 +46,7 @@ def rotate_pass(angle, omega, c, s, step):
     half = 0.5 * step
     for i in range(angle.shape[0]):
         angle[i] += step * omega[i]
-        speed = np.sqrt(omega[i] * omega[i])
+        speed = abs(omega[i])  # of a square that does not underflow, the root to the bit
         axis = omega[i] / (speed + TINY)
         d = speed * half
         q = d * d
