@@ -20,7 +20,9 @@ def forked(script):
         request = {"script": script, "folder": os.getcwd(), "environment": dict(os.environ)}
         connection.sendall(json.dumps(request).encode() + b"\n")
         answer = connection.makefile().readline()
-    return int(answer or 1)  # nothing is said of a fork that was killed with its keeper
+    if not answer:
+        print("the process that jobs are forks of was killed: run the same command again")
+    return int(answer or 1)
 
 
 arguments = sys.argv[1:]

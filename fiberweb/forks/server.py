@@ -18,7 +18,7 @@ from importlib import import_module
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-# what the scripts of most jobs import
+# what the scripts of most jobs import, at their start or when they need it
 HEAVY = (
     "snakemake.iocontainers", "snakemake.logging", "fiberweb.simulation.simulate",
     "fiberweb.simulation.response", "fiberweb.simulation.dataset", "fiberweb.simulation.explain",
