@@ -73,8 +73,9 @@ onstart:
     workflow.scheduler.job_rate_limiter = None
     # of few jobs it takes longer than it saves
     if workflow.local_exec and len([*workflow.dag.needrun_jobs()]) > 8:
-        FORKS = forks.start(PYTHON, RESULTS)
-        sys.executable = forks.interpreter(PYTHON)
+        workflow.forks = forks.start(PYTHON, RESULTS)
+        if workflow.forks:
+            sys.executable = forks.interpreter(PYTHON)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
 
@@ -85,5 +86,9 @@ onsuccess:
     for name in sorted(read):
         for line in findings(name, read[name].sanity):
             print(line)
-    Path(RESULTS, "logs", "snakemake.log").write_text(timed.line() + "\n")
+    timed.write(RESULTS, "snakemake")
     print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")
+
+
+onerror:
+    timed.write(RESULTS, "snakemake")

@@ -7,21 +7,25 @@ import resource
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from time import process_time
+from pathlib import Path
+from threading import Lock
+from time import process_time, thread_time
 
 TOOK = re.compile(r"^took (.+), at most \d+ MB$", re.MULTILINE)
 RSS_UNIT = 1 if sys.platform == "darwin" else 1024  # bytes
 spent: dict[str, float] = {}  # of this process, s
+_lock = Lock()
 
 
 @contextmanager
 def part(name: str) -> Iterator[None]:
     """Count the CPU time of what is done within as spent on `name`."""
-    start = process_time()
+    start = thread_time()  # others may be at work beside this one
     try:
         yield
     finally:
-        spent[name] = spent.get(name, 0.0) + process_time() - start
+        with _lock:
+            spent[name] = spent.get(name, 0.0) + thread_time() - start
 
 
 def line() -> str:
@@ -30,6 +34,13 @@ def line() -> str:
     took = ", ".join(f"{name} {seconds:.3f} s" for name, seconds in parts.items())
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * RSS_UNIT
     return f"took {took}, at most {memory / 1e6:.0f} MB"
+
+
+def write(results: str | Path, name: str) -> None:
+    """Leave what this process has spent in <results>/logs/<name>.log, among those of the jobs."""
+    path = Path(results, "logs", f"{name}.log")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(line() + "\n")
 
 
 def read(log: str) -> dict[str, float]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import shlex
+import shutil
 import socket
 import subprocess
 import sys
@@ -33,17 +34,23 @@ def start(python: str, results: str | Path) -> subprocess.Popen | None:
         results: the folder that tells which engines are compiled.
 
     Returns:
-        The process, to be kept; None where jobs must not be forks.
+        The process, to be kept; None where jobs must not be forks, or cannot.
     """
     if sys.platform != "linux":  # elsewhere system libraries do not bear a fork
         return None
-    folder = tempfile.mkdtemp(prefix="fiberweb-")  # short: a socket's path ends at 108 bytes
-    os.environ[ADDRESS] = str(Path(folder, "socket"))
     one_thread = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
-    with socket.socket(socket.AF_UNIX) as listener:
-        listener.bind(os.environ[ADDRESS])
-        listener.listen(1024)  # from now on a client waits for the server
-        return subprocess.Popen(
-            [python, str(HERE / "server.py"), str(results), str(listener.fileno())],
-            env=os.environ | one_thread, stdin=subprocess.PIPE, pass_fds=[listener.fileno()],
-        )  # fmt: skip
+    folder = None
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="fiberweb-"))
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(str(folder / "socket"))  # not where the path has over 107 bytes
+            listener.listen(1024)  # from now on a client waits for the server
+            process = subprocess.Popen(
+                [python, str(HERE / "server.py"), str(results), str(listener.fileno())],
+                env=os.environ | one_thread, stdin=subprocess.PIPE, pass_fds=[listener.fileno()],
+            )  # fmt: skip
+    except OSError:
+        shutil.rmtree(folder or "", ignore_errors=True)
+        return None
+    os.environ[ADDRESS] = str(folder / "socket")
+    return process

@@ -6,6 +6,7 @@ for that of the client, whichever is first. A script thus ends with its client, 
 
 import atexit
 import contextlib
+import ctypes
 import gc
 import json
 import os
@@ -24,6 +25,8 @@ HEAVY = (
     "fiberweb.simulation.response", "fiberweb.simulation.dataset", "fiberweb.simulation.explain",
     "fiberweb.scoring.capacity", "fiberweb.figures.style",
 )  # fmt: skip
+NOT_FOR_THIS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # it ends with its standard input
+PR_SET_PDEATHSIG = 1
 
 
 def serve(listener, results):
@@ -31,45 +34,55 @@ def serve(listener, results):
 
     Args:
         listener: the socket that clients connect to.
-        results: folder whose warmup/<engine>.done tells which kernels can be loaded.
+        results: folder whose warmup/<engine>.done tells which engines are compiled.
     """
     for name in HEAVY:
         import_module(name)
-    from fiberweb import timed
-    from fiberweb.engines import ENGINES, warmup
-
     loaded = set()
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the keepers are nobody's concern
     while True:
         ready, _, _ = select.select([listener, sys.stdin], [], [])
         if sys.stdin in ready:
-            Path(results, "logs", "forks.log").write_text(timed.line() + "\n")
             return
         connection, _ = listener.accept()
-        for engine in ENGINES:
-            if engine not in loaded and Path(results, "warmup", f"{engine}.done").exists():
+        with connection, contextlib.suppress(BlockingIOError):  # no more processes: none for this
+            load_engines(Path(results, "warmup"), loaded)
+            gc.freeze()  # else the first collection in each fork copies all of memory
+            if os.fork() == 0:
+                try:
+                    listener.close()
+                    keep(connection)
+                finally:
+                    os._exit(1)
+
+
+def load_engines(compiled, loaded):
+    """Load the kernels of engines that were compiled since the last look, from their cache."""
+    from fiberweb.engines import ENGINES, cache, warmup
+
+    for engine in ENGINES.keys() - loaded:
+        kernels = cache.folder().rglob(f"{engine}.*.nbi")
+        if (compiled / f"{engine}.done").exists() and any(kernels):
+            loaded.add(engine)
+            with contextlib.suppress(Exception):  # the script that needs it will say so
                 warmup(engine)
-                loaded.add(engine)
-        gc.freeze()  # else the first collection in each fork copies all of memory
-        if os.fork() == 0:
-            listener.close()
-            keep(connection)
-        connection.close()
 
 
 def keep(connection):
     """Run what a client asks for, tell it the exit code, and end; without it, end the script."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     request = json.loads(connection.makefile().readline())
-    alive, held = os.pipe()  # its end is seen when the script's process is gone
+    connection.sendall(b"taken\n")
     script = os.fork()
     if script == 0:
-        connection.close()
-        os.close(alive)
-        execute(**request)
-    os.close(held)
-    ready, _, _ = select.select([connection, alive], [], [])
-    if alive not in ready:
+        try:
+            connection.close()
+            execute(**request)
+        finally:
+            os._exit(1)
+    ended = os.pidfd_open(script)
+    ready, _, _ = select.select([connection, ended], [], [])
+    if ended not in ready:
         os.kill(script, signal.SIGKILL)
     _, status = os.waitpid(script, 0)
     code = os.waitstatus_to_exitcode(status)
@@ -80,7 +93,10 @@ def keep(connection):
 
 def execute(script, folder, environment):
     """Run a script as Python would from its start to its end."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # not without its keeper
+    for number in NOT_FOR_THIS:
+        signal.signal(number, signal.SIG_DFL)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
@@ -99,16 +115,21 @@ def execute(script, folder, environment):
     atexit._run_exitfuncs()
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(code)
+    os._exit(code & 0xFF)
 
 
 if __name__ == "__main__":
     sys.path[0] = str(ROOT)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the scripts
+    for number in NOT_FOR_THIS:
+        signal.signal(number, signal.SIG_IGN)
     results, listener = sys.argv[1], socket.socket(fileno=int(sys.argv[2]))
     address = Path(listener.getsockname())
     try:
         serve(listener, results)
     finally:
-        address.unlink()
-        address.parent.rmdir()
+        address.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            address.parent.rmdir()
+    from fiberweb import timed
+
+    timed.write(results, "forks")

@@ -80,6 +80,8 @@ def claims(tables: Path, old: str = "") -> pd.DataFrame | None:
         return None
     joined = join(given).drop(columns=["figure", "kind"]).set_index("id")
     kept = parsed(old).reindex(index=joined.index)
+    if len(kept.columns):  # a verdict on other words is none on these
+        kept.loc[kept["statement"] != joined["statement"]] = None
     of_setups = [name for setup in SETUPS for name in (setup, f"{setup}_verdict")]
     columns = {**kept, **joined}
     order = sorted(columns, key=lambda name: of_setups.index(name) if name in of_setups else -1)

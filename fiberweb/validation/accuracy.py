@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
+from fiberweb import timed
 from fiberweb.engines import accepts, load
 from fiberweb.engines.base import Numerics, fitted_step
 from fiberweb.model import authors
@@ -85,7 +86,8 @@ class Case:
         mesh = self.mesh(duration)
         numerics = self.numerics(mesh)
         options = {} if self.order is None else {"order": self.order}
-        return mesh, numerics, load(self.engine).integrate(mesh, numerics, **options)
+        with timed.part("kernel"):
+            return mesh, numerics, load(self.engine).integrate(mesh, numerics, **options)
 
     def trajectory(self, duration: float) -> np.ndarray:
         """Displacements of a run (m)."""

@@ -1,6 +1,8 @@
 """A script in a fork is what it would be in a Python of its own."""
 
 import os
+import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -78,15 +80,31 @@ def test_what_it_registers_for_its_end_is_run_and_its_words_go_where_it_sends_th
     assert log.startswith("Traceback") and "ZeroDivisionError" in log and "server.py" not in log
 
 
-def test_it_ends_with_its_caller(run, tmp_path):
+@pytest.mark.parametrize("ended", ["caller", "keeper"])
+def test_it_ends_with_its_caller_and_with_its_keeper(run, tmp_path, ended):
     text = "import os, time; print(os.getpid(), file=open('pid', 'w'), flush=True); time.sleep(60)"
     process, pid = run(text, wait=False), tmp_path / "pid"
     while not (pid.exists() and pid.read_text().endswith("\n")):
         time.sleep(0.01)
     script = psutil.Process(int(pid.read_text()))
-    process.kill()
+    (process if ended == "caller" else script.parent()).kill()
     _, alive = psutil.wait_procs([script], timeout=10)
     assert not alive
+    assert process.wait() == (-9 if ended == "caller" else 1)
+
+
+def test_a_child_of_it_holds_nobody_up(run):
+    began = time.monotonic()
+    assert run("import subprocess; subprocess.Popen(['sleep', '30'])") == 0
+    assert time.monotonic() - began < 20
+
+
+@pytest.mark.parametrize("end", ["raise SystemExit(2**40)", "1 / 0"])
+def test_no_end_of_it_is_that_of_the_server(run, server, end):
+    text = f"import os; os.dup2(os.open('/dev/full', os.O_WRONLY), 2)\n{end}"
+    run(text)
+    assert server.poll() is None
+    assert os.path.exists(os.environ[forks.ADDRESS])
 
 
 def test_the_server_ends_with_whoever_started_it_and_says_what_it_took(tmp_path, monkeypatch):
@@ -98,3 +116,29 @@ def test_the_server_ends_with_whoever_started_it_and_says_what_it_took(tmp_path,
     assert process.wait(timeout=60) == 0
     assert not os.path.exists(os.path.dirname(address))
     assert (tmp_path / "logs" / "forks.log").read_text().startswith("took rest ")
+
+
+def test_where_no_socket_can_be_there_are_no_forks(tmp_path, monkeypatch):
+    monkeypatch.delenv(forks.ADDRESS, raising=False)
+    long = tmp_path / ("x" * 100)
+    long.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(long))
+    assert forks.start(sys.executable, tmp_path) is None
+    assert list(long.iterdir()) == [] and forks.ADDRESS not in os.environ
+
+
+def test_what_waits_for_a_server_that_is_killed_is_run_by_python(tmp_path, monkeypatch):
+    monkeypatch.setenv(forks.ADDRESS, "")
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    script = tmp_path / "job.py"
+    script.write_text("open('had', 'w').write('run')")
+    process = forks.start(sys.executable, tmp_path)
+    process.send_signal(signal.SIGSTOP)
+    command = f"exec {forks.interpreter(sys.executable)} {script}"
+    client = subprocess.Popen(command, shell=True, cwd=tmp_path)
+    time.sleep(0.5)
+    process.kill()
+    process.wait()
+    assert client.wait(timeout=60) == 0
+    assert (tmp_path / "had").read_text() == "run"
+    shutil.rmtree(os.path.dirname(os.environ[forks.ADDRESS]))

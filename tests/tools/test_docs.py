@@ -133,6 +133,15 @@ def test_claims_of_a_setup_that_was_not_run_again_are_kept(results):
     assert again == "".join(line for line in lines if not line.startswith("| N5"))
 
 
+def test_a_verdict_on_another_statement_is_not_kept(results):
+    both, _ = docs.rewrite(PAGE, results / "tables")
+    (results / "tables" / "published" / "claims.csv").unlink()
+    path = results / "tables" / "described" / "claims.csv"
+    path.write_text(DESCRIBED.replace("8x8 crosshatch", "6x6 crosshatch"))
+    again, _ = docs.rewrite(both, results / "tables")
+    assert "| T1 | 6x6 crosshatch, c[P4] | 0.999 | 1.000 | calibrated | – | – |" in again
+
+
 def test_stable_steps_are_one_row_an_engine(results):
     page, left = docs.rewrite("<!-- table: stability -->\n<!-- end -->\n", results / "tables")
     assert left == []
