@@ -275,13 +275,14 @@ def advance(
                 passes.copy_velocities(state, kicked)
                 passes.hold(kicked, held)
                 lost = passes.damper_power(kicked, spin, ledger)
-                if damped:
-                    lost += viscosity_elements.elements_power(viscous, kicked, stride)
             if filtered:
                 laplace.filter_velocities(views, filtering, scratch.difference, stride)
             passes.hold(state, held)
             stepping.guide(guides, x, y, vx, vy, 0.0)
             if due:
+                if damped:  # over what the filter leaves, as all work is taken
+                    last = passes.Velocities(vx, vy, omega)
+                    lost += viscosity_elements.elements_power(viscous, last, stride)
                 if filtered:
                     lost = passes.add_filter_power(lost, before, kicked, state, spin, ledger, step)
                 energy.enter_dissipation(ledger, due * step, lost)
