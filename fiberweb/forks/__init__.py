@@ -1,7 +1,7 @@
 """Jobs as forks of one process that has everything imported and every kernel loaded.
 
-To start Python, import what a job needs and load a compiled engine takes two to three CPU-seconds,
-as long as most scenes. The process in `server` does so once a call of Snakemake, and every script
+To start Python, import what a job needs and load a compiled engine takes as long as many a scene
+takes to run. The process in `server` does so once a call of Snakemake, and every script
 is then run in a fork of it: `client` stands in for the interpreter, and where there is nothing to
 fork from (a cluster, another system, several threads a job) it becomes the interpreter.
 """

@@ -61,8 +61,9 @@ def load_engines(compiled, loaded):
     from fiberweb.engines import ENGINES, cache, warmup
 
     for engine in ENGINES.keys() - loaded:
-        kernels = cache.folder().rglob(f"{engine}.*.nbi")
-        if (compiled / f"{engine}.done").exists() and any(kernels):
+        if not (compiled / f"{engine}.done").exists():
+            continue
+        if any(cache.folder().rglob(f"{engine}.*.nbi")):
             loaded.add(engine)
             with contextlib.suppress(Exception):  # the script that needs it will say so
                 warmup(engine)
