@@ -76,6 +76,8 @@ onstart:
         workflow.forks = forks.start(PYTHON, RESULTS)
         if workflow.forks:
             sys.executable = forks.interpreter(PYTHON)
+    workflow.progress = progress.Progress(RESULTS, under_way)
+    logger.addHandler(workflow.progress)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
 
@@ -86,9 +88,11 @@ onsuccess:
     for name in sorted(read):
         for line in findings(name, read[name].sanity):
             print(line)
+    workflow.progress.write("finished")
     timed.write(RESULTS, "snakemake")
     print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")
 
 
 onerror:
+    workflow.progress.write("failed")
     timed.write(RESULTS, "snakemake")
