@@ -44,7 +44,7 @@ class Made(NamedTuple):
     files: list[str]
     sentence: str
     meanings: Meanings
-    attributes: Meanings = {}
+    attributes: Meanings | None = None
 
 
 def makers() -> dict[str, str]:

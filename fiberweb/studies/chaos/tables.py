@@ -23,13 +23,11 @@ from fiberweb.meanings import explained
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import recording, tables
 from fiberweb.simulation import dataset
+from fiberweb.studies.chaos.round_off import ROUND_OFF
 
 STEP = 0.5  # s: longer than the input is correlated, so that steps count as independent
 # of the rms displacement: a separation below it grows as a linear one does; our own choice
 SMALL = 0.01
-# of the network's length; our own choice, above what remains between the runs of a pair that
-# forgets
-ROUND_OFF = 100 * np.finfo(float).eps
 DRAWN_EVERY = 0.1  # s, of the separations that are kept
 COLUMNS = {
     "twin": "name of the pair's second run",
