@@ -12,12 +12,8 @@ from fiberweb.written import note
 
 def to_log(job, does, takes):
     """Send everything printed from now on, tracebacks and what libraries say, to the job's log. It
-    begins with what the job does and how long it will take; its last lines are what the job wrote,
-    and what its CPU time went to.
-
-    Args:
-        job: what Snakemake gives to a script.
-        does, takes: in words.
+    begins with what the job does and how long that takes, in words; its last lines are what the job
+    wrote, and what its CPU time went to. `job` is what Snakemake gives to a script.
     """
     # Ctrl-C ends a job at once: an exception inside NetCDF's lock leaves it held, and the process
     # then waits for it for ever
@@ -32,7 +28,8 @@ def to_log(job, does, takes):
         os.dup2(log.fileno(), 2)
     sys.stdout.reconfigure(line_buffering=True)
     print(f"{job.rule}: {does}")
-    print(*(f"{name}: {value}\n" for name, value in job.wildcards.items()), sep="", end="")
+    given = {name: value for name, value in job.wildcards.items() if value}
+    print(*(f"{name}: {value}\n" for name, value in given.items()), sep="", end="")
     again = f"; last time {sum(before.values()):.2g} s of CPU time" if before else ""
     print(f"takes: {takes}{again}")
     atexit.register(lambda: print(timed.line()))
