@@ -16,10 +16,10 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs certificates bench status env clean
+.PHONY: $(shell sed -n 's/^\([a-z][a-z_-]*\):.*/\1/p' $(firstword $(MAKEFILE_LIST)))
 
 help: ## list these targets
-	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z_-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
 
 # Targets stand before the options: an option that takes a list swallows them.
 figures: $(STAMP) ## every figure of the paper and the claims table
@@ -45,6 +45,9 @@ smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --no-loadscope-reorder
+
+test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons: half an hour
+	ANYWHERE=1 $(VENV)/bin/python -m pytest tests/anywhere
 
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors

@@ -11,6 +11,7 @@
 #   snakemake --cores 2 recordings   a score card of each recording that the config lists
 #   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
+import atexit
 import os
 import shlex
 import sys
@@ -96,3 +97,5 @@ onsuccess:
 onerror:
     workflow.progress.write("failed")
     timed.write(RESULTS, "snakemake")
+    # after what Snakemake itself still says
+    atexit.register(failed.tell, workflow.scheduler.failed, RUNS)

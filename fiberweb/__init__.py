@@ -7,14 +7,14 @@ print(score(response).c_nl, baselines(response))
 
 from importlib import import_module
 
-from fiberweb.model.network import crosshatch, polygon
+from fiberweb.model.network import crosshatch, polygon, web
 from fiberweb.model.scene import Scene
 from fiberweb.simulation.explain import explain
 from fiberweb.simulation.simulate import simulate
 
 __all__ = [
     "Scene", "baselines", "card", "certify", "crosshatch", "explain", "polygon", "read_recording",
-    "score", "simulate",
+    "score", "simulate", "web",
 ]  # fmt: skip
 
 # scoring and readers need packages that a simulation need not load

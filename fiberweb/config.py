@@ -172,7 +172,7 @@ def _explain(error: ValidationError) -> str:
     if section is not None:
         keys = ", ".join(section.model_fields)
         name, first = ".".join(path), next(iter(section.model_fields))
-        if path[0] == "recordings":
+        if _listed(path):
             return f"{name} = {problem['input']!r}: give a list of groups of keys, each of {keys}"
         return (
             f"{name} = {problem['input']!r}: this is a group of keys ({keys}), given as "
@@ -196,6 +196,16 @@ def _look_up(path: list[str]):
         if get_origin(section) is list and is_section(get_args(section)[0]):
             section = get_args(section)[0]
     return (section, None) if is_section(section) else (None, field)
+
+
+def _listed(path: list[str]) -> bool:
+    """Whether a path of keys leads into a list of groups of keys."""
+    section = Config
+    for name in path:
+        section = section.model_fields[name].annotation
+        if get_origin(section) is list:
+            return True
+    return False
 
 
 def _spelling(path: list[str]) -> str:

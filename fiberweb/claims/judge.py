@@ -21,6 +21,8 @@ from pathlib import Path
 import pandas as pd
 
 from fiberweb.claims.listed import load
+from fiberweb.meanings import explained
+from fiberweb.model.scene import SETUPS
 
 # in a capacity; our own choice: the paper gives no errors
 ALLOWANCE = 0.03
@@ -29,10 +31,23 @@ ALLOWANCE = 0.03
 SUBSTANTIAL = 0.25
 CROSSHATCHES = (2, 4, 6, 8, 10, 12)
 
-COLUMNS = ("id", "figure", "kind", "statement", "paper", "value", "verdict")
-
 HOLDS, DIFFERS, CALIBRATED = "holds", "differs", "calibrated"
 NOT_APPLICABLE, NOT_COMPUTED = "not applicable", "not computed"
+STATED = {
+    "id": "of the claim",
+    "figure": "of the paper, by our name",
+    "kind": "what is compared: a value, a range or an order",
+    "statement": "what the paper says",
+    "paper": "its number, if it gives one",
+}
+VALUE = "our number or numbers, or why there are none"
+VERDICT = f"{HOLDS}, {DIFFERS}, {CALIBRATED} (it was fitted to), {NOT_APPLICABLE} or {NOT_COMPUTED}"
+COLUMNS = STATED | {"value": VALUE, "verdict": VERDICT}
+JOINED = {
+    name: f"{what}; in this setup"
+    for setup in SETUPS
+    for name, what in {setup: VALUE, f"{setup}_verdict": VERDICT}.items()
+}
 FITTED = {("compliant", claim) for claim in ("T1", "T2", "T3", "T4")}
 ROUND_OFF = 1e-9  # in a capacity; a limit itself is inside
 # Setups in which claims can be judged, by the first letter of their id, where not in all. G: the
@@ -156,13 +171,14 @@ def rules(modules: Iterable[str]) -> dict[str, Callable[[Evidence], Answer]]:
     return {claim: f for f in functions for claim in getattr(f, "claims", ())}
 
 
+@explained(COLUMNS)
 def evaluate(
     tables: dict[str, pd.DataFrame],
     setup: str,
     modules: Iterable[str],
     published_tables: str | Path | None = None,
 ) -> pd.DataFrame:
-    """Judge every claim in one setup.
+    """One row for each claim of the paper, judged in one setup.
 
     Args:
         tables: tables of the setup by name without suffix. Claims whose table is not there are
@@ -190,9 +206,10 @@ def evaluate(
     return pd.DataFrame(records, columns=list(COLUMNS))
 
 
+@explained(STATED, JOINED)
 def join(by_setup: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """The claims with value and verdict in each setup, in columns named after it."""
-    shared = list(COLUMNS[:-2])
+    """One row for each claim, with value and verdict in each setup, in columns named after it."""
+    shared = list(STATED)
     columns = next(iter(by_setup.values()))[shared]
     for setup, frame in by_setup.items():
         names = {"value": setup, "verdict": f"{setup}_verdict"}

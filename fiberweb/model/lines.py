@@ -35,9 +35,9 @@ def cut(scene: Scene, target: float) -> list[Line]:
         ends = network.sections(fibre)
         lengths = np.diff(ends)
         most = np.maximum(1, np.floor(lengths / (ELEMENT_FLOOR * scene.thickest))).astype(int)
-        # the limit is for the short sections of a polygon; a uniform mesh is the user's choice
+        # the limit is for the short sections of others; a uniform mesh is the user's choice
         counts = np.maximum(1, np.round(lengths / target)).astype(int)
-        if network.topology == "polygon":
+        if network.topology != "crosshatch":
             counts = np.minimum(counts, most)
         along = np.concatenate(
             [[0.0]] + [np.linspace(a, b, c + 1)[1:] for a, b, c in zip(ends, ends[1:], counts)]

@@ -11,11 +11,12 @@ from itertools import combinations
 
 import numpy as np
 
-from fiberweb.arguments import plain, positive, spelt, whole
+from fiberweb.arguments import plain, positive, shown, spelt, whole
 
 METRES = " must be a positive length in metres"
 # Beyond these a network alone takes minutes to lay out: a polygon has some n^4 / 24 crossings.
 MOST_FIBRES, MOST_VERTICES = 500, 16
+MOST_STRAIGHT = 100  # fibres of a web, whose crossings are looked for one by one
 COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
 
 
@@ -24,11 +25,12 @@ class Network:
     """Straight fibres and their crossings.
 
     Attributes:
-        topology: "crosshatch" or "polygon".
-        n: fibres in each direction, or vertices of the polygon.
-        length: outer dimension (m): fibre length, or diameter of the circumscribed circle.
+        topology: "crosshatch", "polygon" or "web".
+        n: fibres in each direction, vertices of the polygon, or fibres of the web.
+        length: outer dimension (m): fibre length, diameter of the circumscribed circle, or the
+            longer side of the box around the web.
         spacing: length (m) of the driven section; s of Eqs. 3 and 4.
-        diagonals: "all" or "skip-one" for a polygon, "" for a crosshatch.
+        diagonals: "all" or "skip-one" for a polygon, else "".
         fibres: near and far end of each fibre, shape (fibres, 2, 2), m.
         stations: for each fibre the crossings on it from near to far end, as pairs
             (index of the crossing, distance from the near end in m).
@@ -77,6 +79,9 @@ class Network:
 
     def spec(self) -> dict:
         """What `from_spec` needs to build the network again."""
+        if self.topology == "web":
+            driven = {"driven_fibre": self.driven_fibre, "driven_distance": self.driven_distance}
+            return {"topology": "web", "fibres": self.fibres.tolist()} | driven
         spec = {"topology": self.topology, "n": self.n, "length": self.length}
         return spec | ({"diagonals": self.diagonals} if self.diagonals else {})
 
@@ -167,15 +172,108 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     )  # fmt: skip
 
 
-def _refuse_endless(n: int, most: int, of: str) -> None:
+@spelt
+def web(fibres, driven_fibre: int = 0, driven_distance: float | None = None) -> Network:
+    """Straight fibres of one's own; they are tied wherever they cross.
+
+    The s of Eqs. 3 and 4 is the length of the section that is driven.
+
+    Args:
+        fibres: near and far end of each, [[[x, y], [x, y]], ...], shape (fibres, 2, 2), m; up to
+            `MOST_STRAIGHT`.
+        driven_fibre: number of the fibre that is shaken, from 0.
+        driven_distance: of the driven point from that fibre's near end (m); None: halfway along.
+
+    Raises:
+        ValueError: fibres that are none, lie on one another, end on one another or hang on nothing
+            that is driven; or no driven point; one sentence.
+    """
+    fibres = _checked(fibres)
+    crossings, stations = _cross(fibres)
+    _refuse_loose(fibres, stations, driven_fibre)
+    length = float(np.linalg.norm(np.subtract(*fibres[driven_fibre])))
+    distance = length / 2
+    if driven_distance is not None:
+        inside = f" is not on fibre {driven_fibre}; give a length within its {length:g} m"
+        distance = positive("driven_distance", driven_distance, inside)
+        if distance >= length:
+            raise ValueError(f"driven_distance = {distance:g}{inside}")
+    ends = np.array([0.0, *(at for _, at in stations[driven_fibre]), length])
+    after = int(np.searchsorted(ends, distance))
+    return Network(
+        "web", len(fibres), float(np.ptp(fibres.reshape(-1, 2), axis=0).max()),
+        float(ends[after] - ends[after - 1]), "", fibres, stations, crossings,
+        driven_fibre, distance,
+    )  # fmt: skip
+
+
+def _checked(given) -> np.ndarray:
+    """The ends of fibres (fibres, 2, 2), m; ValueError, one sentence, for others."""
+    try:
+        fibres = np.array(plain(given), dtype=float)
+    except (TypeError, ValueError):
+        fibres = np.empty(0)
+    if fibres.ndim != 3 or fibres.shape[1:] != (2, 2) or not np.isfinite(fibres).all():
+        raise ValueError(
+            f"fibres = {shown(given)} is no list of fibres; give the near and the far end of each "
+            "in metres, [[[x, y], [x, y]], ...]"
+        )
+    _refuse_endless(len(fibres), MOST_STRAIGHT, "fibres of a web", "fibres")
+    length = np.linalg.norm(fibres[:, 1] - fibres[:, 0], axis=1)
+    if (length < COINCIDENT).any():
+        fibre = int(np.argmin(length))
+        raise ValueError(f"fibre {fibre} of the web has no length: its two ends are one point")
+    for a, (near, far) in enumerate(fibres):
+        along = (far - near) / length[a]
+        for b in range(len(fibres)):
+            # ends of b as seen from a: distance along it, and beside it
+            x, y = np.array([along, [-along[1], along[0]]]) @ (fibres[b] - near).T
+            on = (np.abs(y) < COINCIDENT) & (x > COINCIDENT) & (x < length[a] - COINCIDENT)
+            if a != b and on.any():
+                raise ValueError(
+                    f"fibre {b} of the web ends on fibre {a}: ends are held and pulled, and fibres "
+                    "are tied where they cross; let it go on beyond the crossing, or stop before"
+                )
+            same = (np.abs(y) < COINCIDENT).all() and min(x) < length[a] / 2 < max(x)
+            if a < b and same:
+                raise ValueError(f"fibres {a} and {b} of the web lie on one another; leave one out")
+    return fibres
+
+
+def _refuse_loose(fibres: np.ndarray, stations, driven_fibre: int) -> None:
+    """Raise ValueError, one sentence, if nothing is driven, or not all hangs on it."""
+    whole("driven_fibre", driven_fibre, 0)
+    if driven_fibre >= len(fibres):
+        raise ValueError(
+            f"driven_fibre = {driven_fibre} does not exist: the web has fibres 0 to "
+            f"{len(fibres) - 1}"
+        )
+    on = [{crossing for crossing, _ in each} for each in stations]
+    reached, queue = {driven_fibre}, [driven_fibre]
+    while queue:
+        now = queue.pop()
+        new = {f for f in range(len(on)) if f not in reached and on[f] & on[now]}
+        reached |= new
+        queue += new
+    if loose := set(range(len(on))) - reached:
+        raise ValueError(
+            f"fibre {min(loose)} of the web would never move: no crossings lead from it to driven "
+            f"fibre {driven_fibre}; let it cross another one, or leave it out"
+        )
+
+
+def _refuse_endless(n: int, most: int, of: str, name: str = "n") -> None:
     if n > most:
-        raise ValueError(f"n = {n}: more than {most} {of} are beyond any machine; take fewer")
+        raise ValueError(f"{name} = {n}: more than {most} {of} are beyond any machine; take fewer")
 
 
 def from_spec(spec: dict) -> Network:
     """The network whose `spec()` this is."""
     spec = dict(spec)
-    if spec.pop("topology") == "crosshatch":
+    topology = spec.pop("topology")
+    if topology == "web":
+        return web(**spec)
+    if topology == "crosshatch":
         return crosshatch(**spec)
     return polygon(spec["n"], diameter=spec["length"], diagonals=spec["diagonals"])
 
@@ -184,7 +282,7 @@ def _cross(fibres: np.ndarray):
     """Interior crossings of straight fibres; those through one point are one crossing."""
     start, span = fibres[:, 0], fibres[:, 1] - fibres[:, 0]
     length = np.linalg.norm(span, axis=1)
-    points: list[np.ndarray] = []
+    points, count = np.empty((len(fibres) * (len(fibres) - 1) // 2, 2)), 0
     on_fibre: list[dict[int, float]] = [{} for _ in fibres]
     for a, b in combinations(range(len(fibres)), 2):
         determinant = span[a, 0] * span[b, 1] - span[a, 1] * span[b, 0]
@@ -196,11 +294,12 @@ def _cross(fibres: np.ndarray):
         if not (1e-9 < at_a < 1 - 1e-9 and 1e-9 < at_b < 1 - 1e-9):
             continue  # they meet at a vertex, or not at all
         point = start[a] + at_a * span[a]
-        near = [i for i, p in enumerate(points) if np.linalg.norm(p - point) < COINCIDENT]
-        index = near[0] if near else len(points)
-        if not near:
-            points.append(point)
+        near = np.flatnonzero(np.hypot(*(points[:count] - point).T) < COINCIDENT)
+        index = int(near[0]) if len(near) else count
+        if index == count:
+            points[count] = point
+            count += 1
         on_fibre[a].setdefault(index, at_a * length[a])
         on_fibre[b].setdefault(index, at_b * length[b])
     stations = tuple(tuple(sorted(f.items(), key=lambda item: item[1])) for f in on_fibre)
-    return np.array(points), stations
+    return points[:count], stations

@@ -19,7 +19,7 @@ class Place(NamedTuple):
 
     Attributes:
         kind: crossing; horizontal_midpoint or vertical_midpoint of a crosshatch, section_midpoint
-            of a polygon.
+            of other networks.
         fibre: on which it is read.
         section: number of the crossing or of the section along the fibre.
         x, y: rest position, m.

@@ -37,10 +37,11 @@ COMPLIANT = dict(
     crossing_stiffness=70.0, crossing_damping=3.0, damping=2.5, ends="clamped",
     layout="exact", **NO_NUMERICS
 )  # fmt: skip
+TOPOLOGIES = (*authors.PHYSICS, "web")
 SETUPS = {
-    "described": dict.fromkeys(authors.PHYSICS, DESCRIBED),
+    "described": dict.fromkeys(TOPOLOGIES, DESCRIBED),
     "published": authors.PHYSICS,
-    "compliant": dict.fromkeys(authors.PHYSICS, COMPLIANT),
+    "compliant": dict.fromkeys(TOPOLOGIES, COMPLIANT),
 }
 
 
@@ -52,7 +53,7 @@ class Scene:
     A field left at None takes the value of the setup.
 
     Attributes:
-        network: from `crosshatch` or `polygon`.
+        network: from `crosshatch`, `polygon` or `web`.
         setup: "described" (the paper's text), "published" (the authors' code) or "compliant" (with
             crossings that give).
         force: F_max (N), which the input multiplies; Eq. 3 if None.
@@ -130,8 +131,8 @@ class Scene:
     def __post_init__(self):
         if not isinstance(self.network, Network):
             raise ValueError(
-                f"network = {shown(self.network)} is not a network; make one with crosshatch(...) "
-                "or polygon(...)"
+                f"network = {shown(self.network)} is not a network; make one with crosshatch(...), "
+                "polygon(...) or web(...)"
             )
         for name, adapter in _ADAPTERS.items():
             try:
@@ -139,7 +140,13 @@ class Scene:
             except ValidationError as error:
                 raise ValueError(sentence(error, name)) from None
             object.__setattr__(self, name, value)
-        for name, value in SETUPS[self.setup][self.network.topology].items():
+        topology = self.network.topology
+        if topology not in SETUPS[self.setup]:
+            known = " or ".join(SETUPS[self.setup])
+            raise ValueError(
+                f"setup = {self.setup!r} has no {topology}, only {known}; take another setup"
+            )
+        for name, value in SETUPS[self.setup][topology].items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
         self._check()
@@ -149,6 +156,11 @@ class Scene:
     def _check(self) -> None:
         """Raise ValueError for values that exclude one another."""
         polygon = self.network.topology == "polygon"
+        if self.layout == "authors" and self.network.topology not in authors.PHYSICS:
+            raise ValueError(
+                f"layout = 'authors' is of their own networks, and this is a "
+                f"{self.network.topology}; take layout = 'exact'"
+            )
         if self.layout == "authors" and polygon and math.isinf(self.crossing_stiffness):
             raise ValueError(
                 "layout = 'authors' of a polygon starts with gaps at its crossings, which take "

@@ -11,6 +11,13 @@ import numpy as np
 SEVERITIES = ("ok", "note", "repair", "warning", "refused")
 
 
+FINDING = {
+    "name": "what was looked at",
+    "severity": f"{', '.join(SEVERITIES[:-1])} or {SEVERITIES[-1]}",
+    "sentence": "what was found",
+}
+
+
 class Finding(NamedTuple):
     """One line of a recording's sanity list: what was looked at, how bad it is, one sentence."""
 

@@ -13,12 +13,28 @@ from pydantic import ValidationError
 
 from fiberweb.arguments import check_names, plain
 from fiberweb.errors import sentence
+from fiberweb.meanings import RUN, explained
 from fiberweb.model.readouts import AXES
 from fiberweb.recordings import READERS, checks, clock
-from fiberweb.recordings.base import LENGTHS, Finding, driven, head
+from fiberweb.recordings.base import FINDING, LENGTHS, Finding, driven, head
 from fiberweb.recordings.options import Reading
 
+VARIABLES = {
+    "time": ("time from the first frame", "s"),
+    "input": "input, in the file's own unit",
+    "displacement": ("displacement of a marker from its place in the first frame", "m or px"),
+    "axis": "x or y",
+    "readout": "name of the marker",
+    "rest_x": ("x of a marker in the first frame", "m or px"),
+    "rest_y": ("y of a marker in the first frame", "m or px"),
+}
+ATTRIBUTES = {name: RUN[name] for name in ("status", "setup", "sample_rate", "run")} | {
+    "source": "name of the file that was read",
+    "sanity": "what was found in it, as JSON: the rows of sanity.csv",
+}
 
+
+@explained(VARIABLES, attributes=ATTRIBUTES)
 def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
     """See `fiberweb.recordings.read_recording`."""
     check_names(options, [*Reading.model_fields, "quiet"])
@@ -75,9 +91,13 @@ def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
     return response
 
 
+@explained(VARIABLES, attributes=ATTRIBUTES)
 def attempt(path: str | Path, options: dict) -> xr.Dataset:
-    """`read`, or what stands for a recording that is refused: a Dataset with nothing in it but the
-    attributes status 'refused', sanity and the names."""
+    """A recording as the Dataset that a simulation gives.
+
+    What stands for one that is refused has nothing in it but the attributes status 'refused',
+    sanity and the names.
+    """
     try:
         return read(path, False, options)
     except ValueError as error:
@@ -87,8 +107,9 @@ def attempt(path: str | Path, options: dict) -> xr.Dataset:
         return xr.Dataset(attrs=attrs | {"source": Path(path).name, "sanity": json.dumps(found)})
 
 
+@explained(FINDING)
 def listed(response: xr.Dataset) -> pd.DataFrame:
-    """See `fiberweb.recordings.sanity`."""
+    """One row for each thing that was looked at in a recording."""
     return pd.DataFrame(json.loads(response.attrs["sanity"]), columns=Finding._fields)
 
 

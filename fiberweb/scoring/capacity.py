@@ -17,6 +17,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from fiberweb import timed
+from fiberweb.meanings import RUN, explained
 from fiberweb.scoring import arguments, recording
 from fiberweb.scoring.blocks import block_sums, bootstrap_error, capacity_of
 from fiberweb.scoring.regression import (
@@ -31,6 +32,42 @@ from fiberweb.scoring.regression import (
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+_KINDS = {
+    "nonlinear": "capacity for a Legendre polynomial",
+    "memory": "capacity for recall",
+    "c_nl": "nonlinear capacity, mean over the orders",
+    "c_m": "memory capacity, mean over the lags",
+}
+_PARTS = {
+    "": "test part",
+    "_train": "training part",
+    "_raw": "test part, nothing replaced or clipped",
+    "_se": "standard error",
+}
+VARIABLES = {
+    f"{kind}{part}": f"{what}: {where}"
+    for part, where in _PARTS.items()
+    for kind, what in _KINDS.items()
+    if part != "_se" or kind.startswith("c_")
+}
+TOTALS = {name: meaning for name, meaning in VARIABLES.items() if name.startswith("c_")}
+COORDINATES = {
+    "order": "order of the Legendre polynomial",
+    "lag": ("how long ago the recalled input was", "s"),
+}
+_DIMS = {"nonlinear": "order", "memory": "lag", "c": ()}
+ATTRIBUTES = RUN | {
+    "n_signals": "how many there are: x and y of each readout",
+    "scoring": "clean, or published: as the authors scored",
+    "alpha": "ridge penalty, against the sum of squares",
+    "horizon": ("longest lag", "s"),
+    "split": "part of the frames that is trained on",
+    "skip": "first frames that were left out",
+    "shuffle": "1 where targets of C_nl were split at random",
+    "overshoot": "estimates of Legendre and of recall targets beyond which they are replaced",
+}
 
 
 @dataclass(frozen=True)
@@ -143,6 +180,16 @@ def predict(
     return Traces((np.flatnonzero(rows) + options.skip) / sample_rate, *values)
 
 
+TRACES = {
+    "trace": "name of the target: P4 is a Legendre polynomial, 200 ms a recall",
+    "time": ("time from the first frame", "s"),
+    "target": "what is to be computed",
+    "prediction": "what the readouts make of it; nothing replaced or clipped",
+    "c": "capacity, nothing replaced or clipped",
+}
+
+
+@explained(TRACES, attributes=RUN)
 def traces(
     response: xr.Dataset,
     orders: Sequence[int] = (4, 5, 6, 7),
@@ -172,11 +219,12 @@ def traces(
             "prediction": (("trace", "time"), estimate),
             "c": ("trace", 1.0 - (error**2).sum(axis=1) / spread),
         },
-        {"trace": names, "time": ("time", estimates.time, _labels("time", "s"))},
-        {key: response.attrs[key] for key in _KEPT if key in response.attrs},
+        {"trace": names, "time": estimates.time},
+        {key: response.attrs[key] for key in RUN if key in response.attrs},
     )
 
 
+@explained(VARIABLES, COORDINATES, attributes=ATTRIBUTES)
 def score(
     response: xr.Dataset, scoring: str | None = None, orders: int = 10, **options
 ) -> xr.Dataset:
@@ -204,42 +252,12 @@ def score(
         u, moved = recording.scored_input(response, scoring), recording.signals(response)
         with timed.part("solve"):
             capacity = score_arrays(u, moved, rate, orders, scoring=scoring, **options)
-    variables = {
-        stem + suffix: (dims, getattr(capacity, stem + suffix), _labels(f"{what}, {part}"))
-        for stem, (dims, what) in _VARIABLES.items()
-        for suffix, part in _PARTS.items()
-        if hasattr(capacity, stem + suffix)
-    }
-    coords = {
-        "order": ("order", capacity.orders, _labels("Legendre order")),
-        "lag": ("lag", capacity.lags, _labels("recall lag", "s")),
-    }
-    attrs = {key: response.attrs[key] for key in _KEPT if key in response.attrs}
+    variables = {name: (_DIMS[name.split("_")[0]], getattr(capacity, name)) for name in VARIABLES}
+    coords = {"order": capacity.orders, "lag": capacity.lags}
+    attrs = {key: response.attrs[key] for key in RUN if key in response.attrs}
     attrs |= {"sample_rate": rate, "n_signals": 2 * response.sizes["readout"]}
     attrs |= asdict(chosen) | {"shuffle": int(chosen.shuffle)}  # NetCDF has no booleans
     return xr.Dataset(variables, coords, attrs)
-
-
-_KEPT = (
-    "status", "unstable_at", "setup", "scene", "run", "engine", "elements_per_section", "time_step",
-    "sample_rate",
-)  # fmt: skip
-_VARIABLES = {
-    "nonlinear": ("order", "capacity for Legendre polynomials"),
-    "memory": ("lag", "capacity for recall"),
-    "c_nl": ((), "nonlinear capacity"),
-    "c_m": ((), "memory capacity"),
-}
-_PARTS = {
-    "": "test part",
-    "_train": "training part",
-    "_raw": "test part, nothing replaced or clipped",
-    "_se": "test part, standard error",
-}
-
-
-def _labels(long_name: str, units: str = "1") -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
 
 
 def _assemble(orders, lags, nonlinear: tuple, memory: tuple) -> Capacity:

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from fiberweb.arguments import check_names, plain
 from fiberweb.errors import sentence
+from fiberweb.meanings import check
 from fiberweb.scoring import arguments, processing, rank, recording, tasks
 from fiberweb.scoring.blocks import block_sums, capacity_of, interval, redrawn
 from fiberweb.scoring.capacity import trivial_readouts
@@ -34,8 +35,62 @@ if TYPE_CHECKING:
 
 LEGENDRE = np.arange(1, 11)  # orders of C_nl, as in the paper
 LONGEST = 50_000  # frames that are scored: more would tell no more
-SCORES = ["readout", "quantity", "value", "low", "high"]
-PROFILE = ["readout", "degree", "delay_s", "capacity"]
+READOUTS = (
+    f"{BODY}; or made of its input: u; derivatives (u and its first three); powers (to u^3); {TAPS}"
+)
+SCORES = {
+    "readout": READOUTS,
+    "quantity": "name of the number, one of those below",
+    "value": "of the quantity; dimensionless",
+    "low": "lower end of its 95 % interval; empty of counts",
+    "high": "upper end of its 95 % interval; empty of counts",
+}
+PROFILE = {
+    "readout": READOUTS,
+    "degree": "of the functions of the input",
+    "delay_s": ("the longest delay in them", "s"),
+    "capacity": "that counts at this degree and delay",
+}
+QUANTITIES = rank.RANKS | {
+    "c_nl": "nonlinear capacity, mean over the Legendre orders",
+    "c_m": "memory capacity, mean over the lags",
+    "ipc": "total information-processing capacity",
+    **{f"ipc_{degree}": f"of it, that of degree {degree}" for degree in processing.DEGREES},
+    "ipc_threshold": "capacity of one function above which it counts",
+}
+for _order in tasks.ORDERS:
+    QUANTITIES |= {
+        f"narma{_order}_rmse": f"NARMA-{_order}: root of the mean squared error",
+        f"narma{_order}_nrmse": f"NARMA-{_order}: rmse over the standard deviation of the target",
+        f"narma{_order}_nmse": f"NARMA-{_order}: square of nrmse",
+    }
+FACTS = {
+    "run": "name of the recording or run",
+    "frames": "that were scored",
+    "rate_Hz": ("of these frames", "Hz"),
+    "trained_s": ("length of the training part", "s"),
+    "tested_s": ("length of the test part", "s"),
+    "blocks": "in the test part, that intervals are redrawn from",
+    "horizon_s": ("longest delay, and length of a block", "s"),
+    "taps": "of the delay line",
+    "taps_s": ("length of the delay line", "s"),
+    "delay_step_s": ("between the delays of the functions of ipc", "s"),
+    "functions": "of ipc, how many",
+    "amplitude": "of the NARMA tasks' input, from 0",
+    "alpha": "ridge penalty, or cv",
+    "recipe": "of others, instead of the defaults; null: none",
+    "bar": "NMSE below which a NARMA task counts as passed; null: none",
+    "cut_frames": "that came before and were too many to be scored",
+    "refused": "tasks that were left out, a sentence each",
+}
+CARD = {
+    "status": "ok or refused",
+    "verdict": "what the body computes that its input does not, or why it was refused",
+    "notes": "what has to be known beside it, a sentence each",
+    "facts": "numbers that belong to all of the card, by name",
+    "scores": "the rows of card.csv",
+    "profile": "capacity by readout, degree and longest delay, a row each",
+}
 
 
 @dataclass(frozen=True)
@@ -141,10 +196,16 @@ def card(response: xr.Dataset, **options) -> Card:
         "amplitude": chosen.amplitude, "alpha": chosen.alpha, "recipe": chosen.recipe,
         "bar": chosen.bar, "cut_frames": cut, "refused": refused,
     }  # fmt: skip
-    scores = pd.DataFrame(rows, columns=SCORES)
+    scores = pd.DataFrame(rows, columns=list(SCORES))
+    check(scores["quantity"], QUANTITIES, "the score card")
+    check(facts, FACTS, "the score card")
     said = notes(scores, facts, response.attrs.get("sanity"))
     return Card(
-        verdict(quantities, facts), said, facts, scores, pd.DataFrame(profile, columns=PROFILE)
+        verdict(quantities, facts),
+        said,
+        facts,
+        scores,
+        pd.DataFrame(profile, columns=list(PROFILE)),
     )
 
 
@@ -156,7 +217,7 @@ def attempt(response: xr.Dataset, options: dict) -> Card:
             raise ValueError(json.loads(response.attrs["sanity"])[0][-1])
         return card(response, **options)
     except ValueError as error:
-        empty = pd.DataFrame(columns=SCORES), pd.DataFrame(columns=PROFILE)
+        empty = pd.DataFrame(columns=list(SCORES)), pd.DataFrame(columns=list(PROFILE))
         return Card(str(error), [], {}, *empty, status="refused")
 
 

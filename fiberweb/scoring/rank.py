@@ -14,6 +14,13 @@ from scipy.spatial import cKDTree
 
 from fiberweb.scoring.regression import standardise
 
+RANKS = {
+    "n_signals": "signals that move and are no copies of others",
+    "rank": "of the standardised signals, to round-off",
+    "effective_rank": "equal singular values of the same entropy, from 1 to n_signals",
+    "kernel_rank": "of states after inputs that differ (Legenstein and Maass 2007)",
+    "generalisation_rank": "of states after inputs that are nearly the same",
+}
 NOTICED = 0.01  # of the largest singular value: smaller ones do not count in these two ranks
 
 

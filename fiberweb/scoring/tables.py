@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from fiberweb import tables
+from fiberweb.meanings import explained
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import arguments, capacity, recording
 from fiberweb.scoring.limits import ALPHA
@@ -17,11 +18,29 @@ from fiberweb.simulation import dataset
 if TYPE_CHECKING:
     import xarray as xr
 
-SCALARS = ("c_nl", "c_m", "c_nl_train", "c_m_train", "c_nl_raw", "c_m_raw", "c_nl_se", "c_m_se")
-COLUMNS = (
-    "setup", "topology", "n", "spacing_m", "force_N", "tension_N", "buckling_number",
-    *SCALARS, "status", "run",
-)  # fmt: skip
+SCALARS = capacity.TOTALS
+PLACE = {
+    "setup": "described, published or compliant",
+    "topology": "crosshatch or polygon",
+    "n": "fibres in each direction, or vertices of the polygon",
+}
+SCENE = PLACE | {
+    "spacing_m": ("length of the driven section: of a crosshatch, its spacing", "m"),
+    "force_N": ("amplitude of the force, F_max; empty where a motor carries the point", "N"),
+    "tension_N": ("pretension of each fibre", "N"),
+    "buckling_number": "B of Eq. 4; fibres buckle at 1",
+}
+END = {
+    "status": "ok, or unstable: then capacities are empty",
+    "run": "name of the run: its folder in results/runs",
+}
+COLUMNS = SCENE | SCALARS | END
+CHOICE = {
+    "force_choice": (
+        "where the force comes from: eq3, grid, buckling (a multiple of the critical one), "
+        "best_c_nl or best_c_m (of the ridge, below B = 1), authors..., mesh; of the twin, angle"
+    )
+}
 PHYSICS = {
     "crossing_stiffness_N_m": lambda scene, _: scene.crossing_stiffness,
     "crossing_damping_Ns_m": lambda scene, _: scene.crossing_damping,
@@ -37,9 +56,44 @@ NUMERICS = {
     "elements_per_section": lambda _, scored: scored.attrs["elements_per_section"],
     "time_step_s": lambda _, scored: scored.attrs["time_step"],
 }
+OF_PHYSICS = {
+    "crossing_stiffness_N_m": ("of the spring between crossing fibres; inf: one point", "N/m"),
+    "crossing_damping_Ns_m": ("of the damper between crossing fibres", "N s/m"),
+    "damping_per_s": ("rate at which velocity decays, gamma", "1/s"),
+    "loss_factor": "tan(delta) of the material",
+    "filter_order": "of the Laplace filter in the authors' code; 0: none",
+    "seed": "of the input",
+    "disturbance_m": ("by which the driven point starts off its place", "m"),
+    "duration_s": ("of the recording", "s"),
+}
+OF_NUMERICS = {
+    "engine": "kirchhoff, cosserat or elastica",
+    "elements_per_section": "elements on a section as long as the spacing; authors: their mesh",
+    "time_step_s": ("step of the integration", "s"),
+}
 VERDICTS = {"c_nl": "c_nl_verdict", "c_m": "c_m_verdict"}  # what each capacity is
-CURVE_COLUMNS = ("setup", "topology", "n", "target", "at", "c", "c_train", "c_raw", "run")
-BASELINE_COLUMNS = ("readout", "c_nl", "c_m")
+OF_VERDICTS = {
+    column: f"what {name} rests on, if the config asks for certificates: see certificate.csv"
+    for name, column in VERDICTS.items()
+}
+TARGET = {
+    "target": "order of a Legendre polynomial, or lag of a recall",
+    "at": ("the order, dimensionless; or the lag", "s"),
+}
+CURVE_COLUMNS = (
+    PLACE
+    | TARGET
+    | {
+        "c": "capacity: test part",
+        "c_train": "capacity: training part",
+        "c_raw": "capacity: test part, nothing replaced or clipped",
+        "run": END["run"],
+    }
+)
+READOUT = {
+    "readout": "made of the input alone: u; derivatives (u and its first three); powers (to u^3)"
+}
+BASELINE_COLUMNS = READOUT | {name: SCALARS[name] for name in ("c_nl", "c_m")}
 
 
 def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataFrame:
@@ -59,13 +113,16 @@ def rows(scored: Iterable[str | Path | xr.Dataset], **extra: object) -> pd.DataF
     return _frame([_row(*_read_run(each), extra) for each in scored], (*COLUMNS, *extra))
 
 
+@explained(COLUMNS, CHOICE, OF_PHYSICS, OF_NUMERICS, OF_VERDICTS)
 def study(
     capacity_paths: Sequence[str | Path],
     choices: Sequence[str],
     certificate_paths: Sequence[str | Path] = (),
 ) -> pd.DataFrame:
-    """One row per run and choice of its force: `COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`, and
-    `VERDICTS` if there are certificates.
+    """One row for each run and choice of its force.
+
+    Columns: `COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`, and `VERDICTS` if there are
+    certificates.
 
     Args:
         capacity_paths: as for `rows`; a run that two choices agree on comes twice.
@@ -80,14 +137,14 @@ def study(
         verdicts = tables.read(path).groupby("capacity")["verdict"].first()
         record |= {column: verdicts[name] for name, column in VERDICTS.items()}
     verdicts = VERDICTS.values() if certificate_paths else ()
-    return _frame(records, (*COLUMNS, "force_choice", *PHYSICS, *NUMERICS, *verdicts))
+    return _frame(records, (*COLUMNS, *CHOICE, *PHYSICS, *NUMERICS, *verdicts))
 
 
+@explained(CURVE_COLUMNS)
 def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
     """Capacity of every single target, long: one row for each run and target.
 
-    Columns: `CURVE_COLUMNS`. ``target`` is "order" (``at`` is the Legendre order) or "lag"
-    (``at`` is the lag in s); ``c`` is the headline value on the test part.
+    Columns: `CURVE_COLUMNS`.
     """
     records = []
     for path in capacity_paths:
@@ -99,7 +156,7 @@ def curves(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
             records += [
                 (*run, target, *point, scored.attrs["run"]) for point in zip(at, *c, strict=True)
             ]
-    return _frame(records, CURVE_COLUMNS)
+    return _frame(records, tuple(CURVE_COLUMNS))
 
 
 def baselines(
@@ -125,11 +182,15 @@ def baselines(
             u, readouts, sample_rate, scoring=scoring, alpha=alpha, **options
         )
         records.append((name, scored.c_nl, scored.c_m))
-    return _frame(records, BASELINE_COLUMNS)
+    return _frame(records, tuple(BASELINE_COLUMNS))
 
 
+@explained(BASELINE_COLUMNS)
 def input_baselines(response_path: str | Path, **options: object) -> pd.DataFrame:
-    """`baselines` of a response in a file, whose input every run of a study has."""
+    """What readouts made of the input alone score, on the input that every run of a study has.
+
+    `baselines` of a response in a file.
+    """
     return baselines(dataset.load(response_path), **options)
 
 

@@ -9,25 +9,51 @@ import xarray as xr
 
 from fiberweb.engines import load
 from fiberweb.engines.base import Numerics, Recording
+from fiberweb.meanings import RUN, explained
 from fiberweb.model import drive
 from fiberweb.model.mesh import Mesh
 from fiberweb.source import source_hash
 
+VARIABLES = {
+    "time": ("time from the start", "s"),
+    "input": "input u",
+    "scored_input": "input of the scoring, in the published setup",
+    "displacement": ("displacement of a readout from rest", "m"),
+    "energy": ("energy: kinetic and elastic; work and dissipation since the start", "J"),
+    "axis": "x or y",
+    "form": "kinetic, elastic, work or dissipated",
+    "kind": "of a readout: crossing, or midpoint of a section",
+    "rest_x": ("x of a readout at rest", "m"),
+    "rest_y": ("y of a readout at rest", "m"),
+    "fibre": "fibre that a readout lies on, from 0; of a crossing the first",
+    "section": "of a readout: number of the crossing, or of the section, along its fibre, from 0",
+    "centre_line": ("displacement of a node from rest, if the scene asks for centre lines", "m"),
+    "node_rest_x": ("x of a node at rest", "m"),
+    "node_rest_y": ("y of a node at rest", "m"),
+    "node_fibre": "fibre that a node belongs to, from 0; nodes are in order along it",
+}
+ATTRIBUTES = RUN | {
+    "energy_residual": (
+        "largest kinetic + elastic + dissipated - work - what was stored at first, over the "
+        "largest work or that"
+    ),
+    "elements": "how many there are in all",
+    "engine_source": "hash of the code that the response depends on",
+    "versions": "of the packages of the engine",
+}
 
+
+@explained(VARIABLES, attributes=ATTRIBUTES)
 def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset:
     """What a run gave, with all that is needed to repeat it.
 
     Returns:
-        `input(time)` dimensionless, and `scored_input(time)` beside it in the published setup
-        (`fiberweb.model.drive.scored`); `displacement(time, readout, axis)` in metres;
-        `energy(time, form)` in joules, with work and dissipation since the start; coordinates
-        time (s), axis (x, y), and for each readout kind, rest_x, rest_y (m), fibre and section;
-        if the scene asks for centre lines, `centre_line(time, node, axis)` in metres with
-        node_rest_x, node_rest_y (m) and node_fibre for each node, in order along each fibre;
-        attributes status ("ok" or "unstable"), unstable_at (s), energy_residual (the largest
-        kinetic + elastic + dissipated - work - what was stored at first, over the largest work or
-        that), engine, elements_per_section, time_step (s), setup, sample_rate (Hz), versions,
-        engine_source (a hash) and the scene as JSON. Nothing in it depends on the clock.
+        `VARIABLES`: `input(time)` and, in the published setup, `scored_input(time)`
+        (`fiberweb.model.drive.scored`); `displacement(time, readout, axis)`; `energy(time, form)`;
+        coordinates time, axis, and for each readout kind, rest_x, rest_y, fibre and section; if
+        the scene asks for centre lines, `centre_line(time, node, axis)` with node_rest_x,
+        node_rest_y and node_fibre for each node. And `ATTRIBUTES`. Nothing in it depends on the
+        clock.
     """
     scene = mesh.scene
     # nodes of centre lines are no readouts: they are drawn and never scored
@@ -41,21 +67,17 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
     u = drive.of_scene(scene)(scene.times)
     data = xr.Dataset(
         {
-            "input": ("time", u, {"long_name": "input u", "units": "1"}),
-            "displacement": (
-                ("time", "readout", "axis"),
-                moved[:, : len(readouts)],
-                {"long_name": "displacement from rest", "units": "m"},
-            ),
-            "energy": (("time", "form"), recording.energy, {"long_name": "energy", "units": "J"}),
+            "input": ("time", u),
+            "displacement": (("time", "readout", "axis"), moved[:, : len(readouts)]),
+            "energy": (("time", "form"), recording.energy),
         },
         coords={
-            "time": ("time", scene.times, {"units": "s"}),
+            "time": scene.times,
             "axis": ["x", "y"],
             "form": ["kinetic", "elastic", "work", "dissipated"],
             "kind": ("readout", [readout.kind for readout in readouts]),
-            "rest_x": ("readout", rest[:, 0], {"units": "m"}),
-            "rest_y": ("readout", rest[:, 1], {"units": "m"}),
+            "rest_x": ("readout", rest[:, 0]),
+            "rest_y": ("readout", rest[:, 1]),
             "fibre": ("readout", [readout.fibre for readout in readouts]),
             "section": ("readout", [readout.section for readout in readouts]),
         },
@@ -73,8 +95,7 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
         },
     )
     if scene.setup == "published":
-        scored = drive.scored(scene)(scene.times)
-        data["scored_input"] = "time", scored, {"long_name": "input of the scoring", "units": "1"}
+        data["scored_input"] = "time", drive.scored(scene)(scene.times)
     if scene.centre_lines:
         data = data.merge(_centre_lines(mesh, moved[:, len(readouts) :]))
     if unstable:
@@ -92,12 +113,11 @@ def response(mesh: Mesh, numerics: Numerics, recording: Recording) -> xr.Dataset
 def _centre_lines(mesh: Mesh, moved: np.ndarray) -> xr.Dataset:
     """Displacement of every node, shape (time, node, 2), m, with where each node belongs."""
     fibre = np.repeat(np.arange(len(mesh.first) - 1), np.diff(mesh.first))
-    lines = ("time", "node", "axis"), moved, {"long_name": "displacement of nodes", "units": "m"}
     return xr.Dataset(
-        {"centre_line": lines},
+        {"centre_line": (("time", "node", "axis"), moved)},
         {
-            "node_rest_x": ("node", mesh.position[:, 0], {"units": "m"}),
-            "node_rest_y": ("node", mesh.position[:, 1], {"units": "m"}),
+            "node_rest_x": ("node", mesh.position[:, 0]),
+            "node_rest_y": ("node", mesh.position[:, 1]),
             "node_fibre": ("node", fibre),
         },
     )

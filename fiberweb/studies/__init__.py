@@ -23,6 +23,7 @@ STUDIES = (
     "robustness",
     "twin",
     "narma",
+    "webs",
     "buckling",
     "accuracy",
 )

@@ -42,7 +42,8 @@ class Point:
         scene: the physics.
         choice: where its force comes from: "eq3", "grid", "best_c_nl", "best_c_m",
             "authors_c_nl", "authors_c_m", "authors", "buckling" or "mesh"; of the experiment
-            "angle" or, in its panel of parameters, "same" or "parameter=value".
+            "angle" or, in its panel of parameters, "same" or "parameter=value"; of the study
+            `webs`, the name of the network.
         numerics: keyword arguments of `fiberweb.simulate` instead of the config's; None for those.
         scoring: keyword arguments of `fiberweb.score` over the config's.
         camera: keyword arguments of `fiberweb.scoring.camera.films`; None if nothing films it.

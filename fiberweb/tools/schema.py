@@ -37,7 +37,7 @@ def rows(section: Section, prefix: str = "") -> Iterator[tuple[str, ...]]:
         if isinstance(value, Section):
             yield from rows(value, f"{prefix}{name}.")
             continue
-        if value == [] and is_section(item := get_args(field.annotation)[0]):
+        if isinstance(value, list) and is_section(item := get_args(field.annotation)[0]):
             yield from rows(item.model_construct(), f"{prefix}{name}[].")
             continue
         extra = field.json_schema_extra

@@ -18,6 +18,7 @@ import pandas as pd
 from fiberweb import timed
 from fiberweb.engines import accepts, load
 from fiberweb.engines.base import Numerics, fitted_step
+from fiberweb.meanings import explained
 from fiberweb.model import authors
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.network import crosshatch
@@ -36,15 +37,39 @@ SLOW = 8  # N of a crosshatch from which on the slower engines have one mesh onl
 STAND_IN = {"elastica": "cosserat"}  # to round-off: tests/engines/test_equality.py
 STIFF = authors.PHYSICS["crosshatch"]["crossing_stiffness"]  # N/m: far stiffer than the fibres
 
-COLUMNS = (
-    "engine", "setup", "network", "elements_per_section", "time_step", "seconds_per_run",
-    "ns_per_element_step", "trajectory_error", "c_nl_error", "c_m_error",
-    "speedup_vs_pyelastica", "errors_from",
-)  # fmt: skip
+MESH = {
+    "engine": "kirchhoff, cosserat or elastica; or exudyn",
+    "elements_per_section": "elements on a section as long as the spacing; authors: their mesh",
+    "time_step": ("step of the integration", "s"),
+}
+COST = {"seconds_per_run": (f"CPU time of a run of {RUN:g} s", "s")}
+COLUMNS = {
+    "engine": MESH["engine"],
+    "setup": "described, published or compliant",
+    "network": "size of the crosshatch",
+    "elements_per_section": MESH["elements_per_section"],
+    "time_step": MESH["time_step"],
+    **COST,
+    "ns_per_element_step": ("CPU time for each element and step", "ns"),
+    "trajectory_error": "rms of the difference from the converged run, over its rms",
+    "c_nl_error": "of C_nl, from the converged run",
+    "c_m_error": "of C_m, from the converged run",
+    "speedup_vs_pyelastica": "CPU time of PyElastica over this",
+    "errors_from": "the run that the errors were found by",
+}
 LADDER_COLUMNS = (
-    "rung", "change", "engine", "elements_per_section", "time_step", "seconds_per_run",
-    "compared_s", "trajectory_change", "c_nl", "c_nl_change", "c_m", "c_m_change",
-)  # fmt: skip
+    {"rung": "its name", "change": "against the rung above"}
+    | MESH
+    | COST
+    | {
+        "compared_s": ("length of the trajectories that are compared", "s"),
+        "trajectory_change": "rms of the difference from the rung above, over its rms",
+        "c_nl": "nonlinear capacity: test part",
+        "c_nl_change": "of C_nl, from the rung above",
+        "c_m": "memory capacity: test part",
+        "c_m_change": "of C_m, from the rung above",
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -177,11 +202,12 @@ def planar(case: Case) -> Case:
     return replace(case, engine=STAND_IN.get(case.engine, case.engine), elements=elements)
 
 
+@explained(COLUMNS)
 def speed_accuracy(
     *exudyn: pd.DataFrame, networks: list[int], length: float, buckling: float, seconds: float,
     duration: float, window: int, workers: int = 1,
 ) -> pd.DataFrame:  # fmt: skip
-    """Error against cost; columns: `COLUMNS`.
+    """One row for each network, engine and mesh: error against cost.
 
     PyElastica's errors are those of the cosserat engine at the same mesh and step, which follows
     it to round-off (`errors_from` says so; see also `planar`).
@@ -220,7 +246,7 @@ def speed_accuracy(
                  error, c_nl, c_m, yardstick / cpu, f"{alias.engine}, {alias.elements} a section")
             )  # fmt: skip
         rows += _published(n, length, window)
-    return pd.concat([pd.DataFrame(rows, columns=COLUMNS), *map(exudyn_rows, exudyn)])
+    return pd.concat([pd.DataFrame(rows, columns=list(COLUMNS)), *map(exudyn_rows, exudyn)])
 
 
 def exudyn_rows(checked: pd.DataFrame) -> pd.DataFrame:
@@ -272,10 +298,11 @@ def rungs(length: float, buckling: float) -> list[tuple[str, str, Case]]:
     ]
 
 
+@explained(LADDER_COLUMNS)
 def ladder(
     length: float, buckling: float, seconds: float, duration: float, window: int, workers: int = 1
 ) -> pd.DataFrame:
-    """What each simplification changes against the rung above it; columns: `LADDER_COLUMNS`.
+    """One row for each simplification: what it changes against the rung above it.
 
     PyElastica runs for `window` steps only and is not scored. Arguments: see `speed_accuracy`.
     """
@@ -300,4 +327,4 @@ def ladder(
             (names[i], changes[i], case.engine, case.elements, *costs[i][:2], compared, moves,
              c_nl, d_nl, c_m, d_m)
         )  # fmt: skip
-    return pd.DataFrame(rows, columns=LADDER_COLUMNS)
+    return pd.DataFrame(rows, columns=list(LADDER_COLUMNS))

@@ -30,6 +30,7 @@ import xarray as xr
 
 from fiberweb.engines import accepts, load
 from fiberweb.engines.base import Numerics, fitted_step
+from fiberweb.meanings import explained
 from fiberweb.model import drive
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.scene import Scene
@@ -46,7 +47,16 @@ TIED = 1e4  # N/m: a crossing to engines that cannot make it one point; gives 5 
 CHAOS, PHYSICS = "one realisation of chaos", "physics"
 ARTEFACTS = ("filter", "rounding")
 CAPACITIES = ("c_nl", "c_m")
-COLUMNS = ("capacity", "changed", "share", "cost", "before", "after", "change", "verdict")
+COLUMNS = {
+    "capacity": "c_nl or c_m",
+    "changed": "what was changed that is no physics",
+    "share": "of the recording, on which both runs are compared",
+    "cost": "of the comparison, in runs",
+    "before": "the capacity without the change",
+    "after": "with it",
+    "change": "after - before",
+    "verdict": "what the capacity rests on: physics, or what it follows; of all rows together",
+}
 
 
 @dataclass(frozen=True)
@@ -77,19 +87,18 @@ def certify(scene: Scene, accuracy: str | None = None, **numerics) -> pd.DataFra
     return certificate(run(plan(scene, accuracy, **numerics)))
 
 
+@explained(COLUMNS)
 def certificate(response: xr.Dataset, **scoring) -> pd.DataFrame:
-    """What the capacities of a run rest on.
+    """One row for each change and capacity: what the capacities of a run rest on.
 
     Args:
         response: of `fiberweb.simulate`.
         **scoring: as for `fiberweb.score`.
 
     Returns:
-        A row for each change and capacity: capacity ("c_nl" or "c_m"), changed, share of the
-        recording, cost (in element-steps of the run, weighed by engine), before and after (NaN of
-        an unstable run), change, and verdict on the capacity, the same in all of its rows:
-        "physics", or what it follows, change times share, by more than `TOLERANCE`, joined by
-        " and ".
+        Columns `COLUMNS`: cost in element-steps, weighed by engine; before and after NaN of an
+        unstable run; the verdict "physics", or what the capacity follows, change times share, by
+        more than `TOLERANCE`, joined by " and ".
     """
     before = {}
     records = []

@@ -13,15 +13,22 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
+from fiberweb.meanings import explained
 from fiberweb.model.network import Network, crosshatch
 from fiberweb.model.scene import Scene
 from fiberweb.simulation.simulate import simulate
-from fiberweb.validation.accuracy import difference
+from fiberweb.validation.accuracy import MESH, difference
 
 COLUMNS = (
-    "network", "engine", "elements_per_section", "time_step", "against", "difference",
-    "mesh_error", "step_error",
-)  # fmt: skip
+    {"network": "single fibre, or size of the crosshatch"}
+    | MESH
+    | {
+        "against": "code that it is compared with; slender: without shear and rotary inertia",
+        "difference": "rms of the difference from that code, over its rms",
+        "mesh_error": "the same from this code's own finest mesh",
+        "step_error": "the same from this mesh at twice the step, of Exudyn alone",
+    }
+)
 MESHES = (4, 8, 16)  # elements per section of our engines
 CONVERGED = 64  # of their own finest mesh: second order from 16 on leaves a sixteenth of its error
 COARSE, YARDSTICK, FINER = 4, 8, 12  # of Exudyn; three nodes each
@@ -50,17 +57,16 @@ SCENES = {
 }
 
 
+@explained(COLUMNS)
 def table() -> pd.DataFrame:
-    """Differences of displacement at crossings and midpoints over the whole run.
+    """One row for each scene, code, mesh and code that it is compared with.
 
-    All are rms over the rms of what is compared with, dimensionless.
+    Differences are of displacement at crossings and midpoints over the whole run.
 
     Returns:
-        Columns `COLUMNS`, some 12 rows for each of `SCENES`: network; engine; elements_per_section;
-        time_step (s); against, the code compared with, and the difference from it; mesh_error,
-        from the same code on its own finest mesh; step_error, from the same mesh at twice the
-        step, of Exudyn alone: the step of our engines falls with their mesh. "exudyn slender" has
-        no mesh finer than the yardstick, because its Newton iterations then stall.
+        Columns `COLUMNS`, some 12 rows for each of `SCENES`. Our engines have no step_error: their
+        step falls with their mesh. "exudyn slender" has no mesh finer than the yardstick, because
+        its Newton iterations then stall.
 
     Raises:
         ModuleNotFoundError: Exudyn is not installed.

@@ -15,6 +15,7 @@ import pandas as pd
 
 from fiberweb.engines import accepts, load
 from fiberweb.engines.base import Numerics, Recording
+from fiberweb.meanings import explained
 from fiberweb.model import authors
 from fiberweb.model.drive import spline
 from fiberweb.model.mesh import Mesh, build
@@ -43,15 +44,38 @@ PUSHED = 0.05  # s in which the force of the out-of-plane runs grows; a section'
 DISTURBANCE = 1e-6  # m/s out of the plane, of the driven point at the start of these runs
 PLANE_ELEMENTS = 4  # per section, as in the standard accuracy
 
-COLUMNS = (
-    "engine", "network", "spacing_m", "diameter_m", "tension_N", "force_N",
-    "crossing_stiffness", "crossing_damping", "elements_per_section", "predicted_s",
-    "found_loaded_s", "found_s", "ratio", "automatic_step_status",
-)  # fmt: skip
-PLANE_COLUMNS = ("buckling_number", "time", "out_of_plane_m", "in_plane_m")
-DRIFT_COLUMNS = (
-    "engine", "network", "elements", "time_step", "steps", "energy_J", "drift", "fluctuation",
-)  # fmt: skip
+ENGINE = {
+    "engine": "kirchhoff, cosserat or elastica",
+    "network": "size of the crosshatch",
+}
+COLUMNS = ENGINE | {
+    "spacing_m": ("spacing of the fibres", "m"),
+    "diameter_m": ("of the fibres", "m"),
+    "tension_N": ("pretension of each fibre", "N"),
+    "force_N": ("amplitude of the force, F_max", "N"),
+    "crossing_stiffness": ("of the spring between crossing fibres; inf: one point", "N/m"),
+    "crossing_damping": ("of the damper between crossing fibres", "N s/m"),
+    "elements_per_section": "elements on a section as long as the spacing",
+    "predicted_s": ("limit of the step as the engine predicts it", "s"),
+    "found_loaded_s": ("smallest unstable step under the point's own force", "s"),
+    "found_s": ("smallest unstable step under a gentle force", "s"),
+    "ratio": "predicted over found",
+    "automatic_step_status": "of a run at the automatic step: ok, unstable or lost (NaN)",
+}
+PLANE_COLUMNS = {
+    "buckling_number": "B of the force",
+    "time": ("from the start", "s"),
+    "out_of_plane_m": ("largest displacement out of the plane", "m"),
+    "in_plane_m": ("largest displacement in the plane", "m"),
+}
+DRIFT_COLUMNS = ENGINE | {
+    "elements": "how many there are in all",
+    "time_step": ("step of the integration", "s"),
+    "steps": "of the run",
+    "energy_J": ("mean of kinetic and elastic energy after the shaking", "J"),
+    "drift": "slope of the energy times the run's length, over energy_J",
+    "fluctuation": "largest departure of the energy from its mean, over energy_J",
+}
 
 
 @dataclass(frozen=True)
@@ -194,19 +218,21 @@ def corners(engine: str, box: dict[str, list[float]]) -> Iterator[Point]:
                 )  # fmt: skip
 
 
+@explained(COLUMNS)
 def stability(box: dict[str, list[float]], steps: int) -> pd.DataFrame:
-    """Predicted and found limits; columns: `COLUMNS`.
+    """One row for each point in the box of scenes: predicted and found limits of the step.
 
     Args:
         box: values of spacing (m), diameter (m), tension (N), buckling (the number B of the
             force) and elements (per section).
         steps: of each run of a bisection; ten times as many for a run under the point's force.
     """
-    return pd.DataFrame([measure(point, steps) for point in points(box)], columns=COLUMNS)
+    return pd.DataFrame([measure(point, steps) for point in points(box)], columns=list(COLUMNS))
 
 
+@explained(DRIFT_COLUMNS)
 def drift(steps: int) -> pd.DataFrame:
-    """Energy of undamped free motion over many steps; columns: `DRIFT_COLUMNS`.
+    """One row for each engine: energy of undamped free motion over many steps.
 
     A network is shaken for a second and then left to itself. `drift` is the slope of its energy
     (with the tension's potential) times the run's length, `fluctuation` the largest departure
@@ -230,11 +256,12 @@ def drift(steps: int) -> pd.DataFrame:
         rows.append(
             (engine, "2x2", mesh.elements, step, steps, energy, slope / energy, largest / energy)
         )
-    return pd.DataFrame(rows, columns=DRIFT_COLUMNS)
+    return pd.DataFrame(rows, columns=list(DRIFT_COLUMNS))
 
 
+@explained(PLANE_COLUMNS)
 def out_of_plane(buckling: list[float], seconds: float) -> pd.DataFrame:
-    """Largest displacements out of the plane and in it of a disturbed 2x2 crosshatch.
+    """One row for each force and sample of a disturbed 2x2 crosshatch: how far it leaves the plane.
 
     PyElastica, in space, with a force that grows smoothly within `PUSHED` and then stays.
 
@@ -243,7 +270,7 @@ def out_of_plane(buckling: list[float], seconds: float) -> pd.DataFrame:
         seconds: simulated.
 
     Returns:
-        One row for each force and sample; columns `PLANE_COLUMNS`.
+        Columns `PLANE_COLUMNS`.
     """
     import elastica
 
@@ -267,4 +294,4 @@ def out_of_plane(buckling: list[float], seconds: float) -> pd.DataFrame:
             inside = np.abs(moved[:, :2] - mesh.position).max()
             rows.append((number, at, np.abs(moved[:, 2]).max(), inside))
             now = engine.run_steps(simulator, stepper, now, step, per_sample)
-    return pd.DataFrame(rows, columns=PLANE_COLUMNS)
+    return pd.DataFrame(rows, columns=list(PLANE_COLUMNS))

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fiberweb.model.network import crosshatch, from_spec, polygon
+from fiberweb import Scene
+from fiberweb.model.network import crosshatch, from_spec, polygon, web
 
 crosshatches = st.builds(crosshatch, st.integers(2, 12), length=st.floats(0.05, 5.0)) | st.builds(
     crosshatch, st.integers(2, 12), spacing=st.floats(0.01, 1.0)
@@ -127,3 +128,48 @@ def test_what_is_wrong_is_said_in_one_sentence(make, args, kwargs, words):
 def test_a_network_that_no_machine_holds_is_refused_at_once(make, n):
     with pytest.raises(ValueError, match=rf"^n = {n}: more than .* are beyond any machine"):
         make(n, 0.5)
+
+
+ACROSS = [[[0.0, 0.1], [0.3, 0.1]], [[0.1, 0.0], [0.1, 0.3]]]
+
+
+@given(crosshatches | polygons)
+@settings(max_examples=20, deadline=None)
+def test_a_web_of_the_fibres_of_another_is_that_network(network):
+    same = web(network.fibres, network.driven_fibre, network.driven_distance)
+    np.testing.assert_allclose(same.spacing, network.spacing, rtol=1e-9)
+    assert same.stations and [len(each) for each in same.stations] == [
+        len(each) for each in network.stations
+    ]
+    ours, theirs = (sorted(map(tuple, np.round(n.crossings, 9))) for n in (same, network))
+    np.testing.assert_allclose(ours, theirs, atol=2e-9)
+    assert from_spec(same.spec()) == same
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (([],), "fibres = [] is no list of fibres"),
+        (([[1.0, 2.0], [3.0, 4.0]],), "near and the far end of each in metres"),
+        (("abc",), "fibres = 'abc'"),
+        (([[[0.0, 0.0], [0.0, np.nan]]],), "is no list of fibres"),
+        (([[[0.0, 0.0], [0.0, 0.0]]],), "fibre 0 of the web has no length"),
+        (([*ACROSS, [[0.0, 0.2], [0.05, 0.3]]],), "fibre 2 of the web would never move"),
+        (([*ACROSS, [[0.0, 0.2], [0.1, 0.2]]],), "fibre 2 of the web ends on fibre 1"),
+        (([*ACROSS, ACROSS[0][::-1]],), "fibres 0 and 2 of the web lie on one another"),
+        ((ACROSS * 60,), "fibres = 120: more than 100 fibres of a web"),
+        ((ACROSS, 2), "driven_fibre = 2 does not exist: the web has fibres 0 to 1"),
+        ((ACROSS, 0, 0.3), "driven_distance = 0.3 is not on fibre 0; give a length within its 0.3"),
+    ],
+)
+def test_what_is_no_web_is_one_sentence(arguments, words):
+    with pytest.raises(ValueError) as error:
+        web(*arguments)
+    assert words in str(error.value)
+
+
+def test_the_authors_have_no_web():
+    with pytest.raises(ValueError, match="setup = 'published' has no web, only crosshatch or pol"):
+        Scene(web(ACROSS), "published")
+    with pytest.raises(ValueError, match="layout = 'authors' is of their own networks"):
+        Scene(web(ACROSS), layout="authors")

@@ -23,14 +23,14 @@ def box():
          p.damping, p.elements, PREDICTED, LOADED, FOUND, PREDICTED / FOUND, "ok")
         for p in limits.points(BOX)
     ]  # fmt: skip
-    return pd.DataFrame(rows, columns=limits.COLUMNS)
+    return pd.DataFrame(rows, columns=list(limits.COLUMNS))
 
 
 def test_stability_draws_every_point_and_the_drift(box, tmp_path):
     drift = pd.DataFrame(
         [(engine, "2x2", 24, 1e-5, 10_000_000, 1e-6, -3e-7, 1e-5)
          for engine in ("kirchhoff", "cosserat")],
-        columns=limits.DRIFT_COLUMNS,
+        columns=list(limits.DRIFT_COLUMNS),
     )  # fmt: skip
     given = {"stability": box, "energy_drift": drift}
     figure = plotting.draw_stability(given, "described", tmp_path / "stability.png")
@@ -68,7 +68,7 @@ def test_speed_draws_a_panel_for_each_error_and_network(tmp_path):
             ("cosserat", "published", "authors", 30.0, 1e-9),
         )
     ]
-    table = pd.DataFrame(rows, columns=accuracy.COLUMNS)
+    table = pd.DataFrame(rows, columns=list(accuracy.COLUMNS))
     path = tmp_path / "speed_accuracy.png"
     figure = plotting.draw_speed_accuracy({"speed_accuracy": table}, "described", path)
     assert_written(path)

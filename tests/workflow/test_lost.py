@@ -125,6 +125,35 @@ def test_after_snakemake_was_killed(tiny):
 
 
 @pytest.mark.slow
+def test_a_job_that_fails_is_told_on_the_last_line(tiny, edited):
+    edited("fiberweb/studies/topology/figure.py", "\nraise ValueError('ink = 0: give more')\n")
+    call = start(tiny, *COMMAND)
+    printed, _ = call.communicate()
+    assert call.returncode == 1
+    log = "tiny/logs/figures/topology.log"
+    assert printed.splitlines()[-1] == (
+        f"figure topology failed: ValueError: ink = 0: give more. Log: {log}. "
+        "What to do: change what it names, then give the same command again."
+    )
+    assert "Traceback (most recent call last)" in (tiny.folder / log).read_text()
+
+
+@pytest.mark.slow
+def test_every_log_says_what_is_done_how_long_it_takes_and_what_was_chosen(tiny):
+    logs = [path for path in (tiny.folder / "tiny" / "logs").rglob("*/*.log")]
+    assert {path.parent.name for path in logs} == {
+        "warmup", "simulate", "capacity", "tables", "figures"
+    }  # fmt: skip
+    for path in logs:
+        lines = path.read_text().splitlines()
+        assert re.match(r"(warmup|simulate|capacity|table|figure): \w", lines[0]), path
+        assert any(re.match(r"takes: \w", line) for line in lines[1:4]), path
+        chosen = [line for line in lines[3:] if re.match(r"\w[\w ]*: ?\S", line)]
+        assert chosen or path.parent.name == "warmup", path
+        assert lines[-1].startswith("took "), path
+
+
+@pytest.mark.slow
 def test_the_last_line_names_what_was_made_and_nothing_else(tiny):
     printed = tiny.snakemake("tiny/tables/described/topology.csv", "--force", *COMMAND[1:])
     assert re.findall("^Done: .*", printed, re.M) == ["Done: 1 file in tiny/tables/described."]

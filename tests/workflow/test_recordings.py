@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from tests.workflow.conftest import ROOT
+from tests.workflow.explained import compared
 
 EXAMPLE = ROOT / "examples" / "recordings"
 
@@ -45,6 +46,7 @@ def test_broken_recordings_are_refused_and_the_others_are_scored(tmp_path):
         (finding,) = pd.read_csv(out / name / "sanity.csv").to_dict("records")
         assert finding["severity"] == "refused" and words in finding["sentence"]
         assert (out / name / "card.png").exists() and (out / name / "card.csv").exists()
+    assert len(compared(out.parent)) == 4  # card.json and card.csv, recording.nc and sanity.csv
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from fiberweb import forks, progress, studies, timed
+from fiberweb import failed, forks, progress, studies, timed
 from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
 from fiberweb.files import SUFFIXES, Files

@@ -9,7 +9,8 @@ from fiberweb import products
 from fiberweb.figures.card import draw
 from fiberweb.scoring.card import attempt
 
-to_log(snakemake)
+to_log(snakemake, "scores a recording beside what its input alone scores", "up to some minutes")
+print("options:", snakemake.params.options or "the defaults")
 card = attempt(products.read(snakemake.input[0]), snakemake.params.options)
 print(card)
 products.write(card.scores, snakemake.output.table)

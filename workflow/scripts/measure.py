@@ -4,8 +4,9 @@ from logs import to_log
 
 from fiberweb import products
 
-to_log(snakemake)
+to_log(snakemake, "measures error and cost, or limits of the step", "up to some minutes")
 given = [products.read(path) for path in snakemake.input.tables]
 for (make, options, threaded), path in zip(snakemake.params.calls, snakemake.output, strict=True):
     workers = {"workers": snakemake.threads} if threaded else {}
+    print(make, options, workers or "")
     products.write(products.function(make)(*given, **options, **workers), path)

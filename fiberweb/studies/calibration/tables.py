@@ -20,6 +20,7 @@ from pathlib import Path
 import pandas as pd
 
 from fiberweb.claims import listed
+from fiberweb.meanings import explained
 from fiberweb.model.scene import SETUPS
 from fiberweb.scoring import tables
 from fiberweb.studies.calibration.grid import GRID, SIZE
@@ -35,7 +36,16 @@ TARGETS = {
 VARIABLES = {"order": "nonlinear", "lag": "memory"}
 SETUP = "compliant"
 DEFAULTS = SETUPS[SETUP]["crosshatch"]
-CHECK_COLUMNS = ("setup", "role", *GRID, *TARGETS, "misfit")
+WORDS = {"order": "Legendre polynomial {:g}", "lag": "u {:g} s ago"}
+MEASURED = {
+    column: f"capacity for {WORDS[kind].format(at)}: test part; claim {claim}"
+    for column, (claim, kind, at) in TARGETS.items()
+} | {"misfit": "sum of ((c - paper) / tolerance)^2 over these four; of the 8x8 alone"}
+CHECK_COLUMNS = (
+    {"setup": tables.SCENE["setup"], "role": "best of the grid, default, paper or tolerance"}
+    | {column: tables.OF_PHYSICS[column] for column in GRID}
+    | MEASURED
+)
 DIGITS = 2  # of a misfit; points that agree in these are a tie
 NONE_STABLE = "the calibration table has no stable run of the 8x8 crosshatch to judge"
 
@@ -57,8 +67,9 @@ def misfit(capacities: Sequence[float]) -> float:
     return sum(((c - value) / tolerance) ** 2 for c, (value, tolerance) in terms)
 
 
+@explained(tables.COLUMNS, tables.CHOICE, tables.OF_PHYSICS, tables.OF_NUMERICS, MEASURED)
 def table(capacity_paths: Iterable[str | Path]) -> pd.DataFrame:
-    """One row a run: the columns of `tables.study`, those of `TARGETS`, and ``misfit``.
+    """One row for each run: the columns of `tables.study`, those of `TARGETS`, and ``misfit``.
 
     Args:
         capacity_paths: files as for `tables.rows`.
@@ -84,8 +95,10 @@ def best(frame: pd.DataFrame) -> pd.Series:
     return frame.loc[frame["misfit"].idxmin()]
 
 
+@explained(CHECK_COLUMNS)
 def check(frame: pd.DataFrame) -> pd.DataFrame:
-    """The grid's best point, the compliant setup's defaults, and what both are held against.
+    """One row for each role: the grid's best point, the compliant setup's defaults, and what both
+    are held against.
 
     Args:
         frame: from `table`.

@@ -13,23 +13,47 @@ import xarray as xr
 
 from fiberweb.engines import load
 from fiberweb.engines.base import Numerics
+from fiberweb.meanings import RUN, explained
 from fiberweb.model.mesh import Mesh, build
 from fiberweb.model.scene import Scene
 from fiberweb.simulation import dataset
 
 SHARES = (0.1, 0.5, 0.9)  # quantiles over the inner nodes
 BINS = np.arange(-9.0, -0.95, 0.1)  # log10 of an angle in rad
+LOOK_VARIABLES = {
+    "time": ("time from the start", "s"),
+    "turn": ("angle between the elements beside an inner node", "rad"),
+    "band": ("half the width of the dead band there", "rad"),
+}
+SETUP = {"setup": RUN["setup"]}
 BAND_COLUMNS = (
-    "setup", "time_s", *(f"turn_{share:g}_rad" for share in SHARES),
-    *(f"band_{share:g}_rad" for share in SHARES), "share_inside", "curvature_per_m",
-    "surface_strain", "moment_Nm", "bow_m",
-)  # fmt: skip
+    SETUP
+    | {"time_s": ("of the look", "s")}
+    | {f"turn_{share:g}_rad": (f"quantile {share:g} of turn", "rad") for share in SHARES}
+    | {f"band_{share:g}_rad": (f"quantile {share:g} of band", "rad") for share in SHARES}
+    | {
+        "share_inside": "of the nodes: those that bend freely, their turn being within the band",
+        "curvature_per_m": ("that the median band hides", "1/m"),
+        "surface_strain": "that goes with this curvature",
+        "moment_Nm": ("that goes with this curvature", "N m"),
+        "bow_m": ("of one section, that goes with this curvature", "m"),
+    }
+)
+HISTOGRAM_COLUMNS = SETUP | {
+    "from_rad": ("lower end of the bin", "rad"),
+    "to_rad": ("upper end of the bin", "rad"),
+    "turn": "share of all nodes and looks with a turn in the bin",
+    "band": "the same of the dead band's half width",
+}
 
 
+@explained(
+    LOOK_VARIABLES,
+    attributes=SETUP | {"scene": RUN["scene"], "element": ("length of an element", "m")},
+)
 def looks(response_path: str | Path, every: float) -> xr.Dataset:
-    """A run looked at every so many seconds: at each inner node of a fibre (rad) ``turn(time,
-    node)``, the angle between the elements beside it, and ``band(time, node)``, half the width of
-    the dead band there; attributes setup, scene and element (m)."""
+    """A run looked at every so many seconds, at each inner node of a fibre: ``turn(time, node)``
+    and ``band(time, node)``."""
     attrs = dataset.load(response_path).attrs
     scene = Scene.from_json(attrs["scene"])
     mesh = build(scene)
@@ -48,18 +72,18 @@ def looks(response_path: str | Path, every: float) -> xr.Dataset:
     load(attrs["engine"]).integrate(
         mesh, Numerics(attrs["engine"], None, attrs["time_step"]), watch
     )
-    angles, radians = ("time", "node"), {"units": "rad"}
+    angles = ("time", "node")
     return xr.Dataset(
-        {"turn": (angles, np.array(turns), radians), "band": (angles, np.array(bands), radians)},
-        {"time": ("time", times, {"units": "s"})},
+        {"turn": (angles, np.array(turns)), "band": (angles, np.array(bands))},
+        {"time": times},
         {"setup": scene.setup, "scene": attrs["scene"], "element": mesh.edges(0)[0]},
     )
 
 
+@explained(BAND_COLUMNS)
 def growth(seen: xr.Dataset) -> pd.DataFrame:
-    """One row a look: quantiles of turns and of the band's half width (rad), the share of nodes
-    that bend freely because their turn is inside; and what else would hide the median band: a
-    curvature (1/m), a strain at the surface, a moment (N m), a bow of one section (m)."""
+    """One row for each look: quantiles of turns and of the band's half width, and what the median
+    band hides."""
     scene = Scene.from_json(seen.attrs["scene"])
     rows = []
     for time, turn, band in zip(seen["time"].values, seen["turn"].values, seen["band"].values):
@@ -74,9 +98,9 @@ def growth(seen: xr.Dataset) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(BAND_COLUMNS))
 
 
+@explained(HISTOGRAM_COLUMNS)
 def histogram(seen: xr.Dataset) -> pd.DataFrame:
-    """Share of all nodes and looks in each bin of the logarithm of their turn, and of their band:
-    columns setup, from_rad, to_rad, turn, band."""
+    """One row for each bin of the logarithm of an angle: share of turns and of bands in it."""
     counts = {}
     for name in ("turn", "band"):
         values = seen[name].values[1:].ravel()  # all are 0 at first

@@ -7,15 +7,25 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb.meanings import explained
 from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 
 
+@explained(
+    tables.COLUMNS,
+    tables.CHOICE,
+    {
+        "layout": "of crossings and readouts: exact, or on the authors' mesh",
+        "filter_order": tables.OF_PHYSICS["filter_order"],
+        "dead_band": "1 where rotations are rounded as the authors' code does",
+    },
+    tables.OF_NUMERICS,
+)
 def table(
     response_paths: Iterable[str | Path], choices: Sequence[str], alpha: float
 ) -> pd.DataFrame:
-    """One row a run: `tables.COLUMNS`, force_choice, layout, filter_order, dead_band and
-    `tables.NUMERICS`.
+    """One row for each run, scored as the authors score.
 
     Args:
         response_paths: of published scenes with filter and dead band on or off, and of the

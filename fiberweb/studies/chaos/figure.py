@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fiberweb.figures import panels, plots, style
-from fiberweb.studies.chaos.tables import ROUND_OFF
+from fiberweb.studies.chaos.round_off import ROUND_OFF
 
 SHOWN = 6  # pairs whose separation is drawn
 CONSISTENCY = {"marker": "o", "ms": 3, "lw": 0.8, "color": style.colours(2)[0]}

@@ -19,22 +19,34 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from fiberweb.meanings import explained
 from fiberweb.model.scene import Scene
-from fiberweb.scoring import recording
+from fiberweb.scoring import recording, tables
 from fiberweb.simulation import dataset
+from fiberweb.studies.chaos.round_off import ROUND_OFF
 
 STEP = 0.5  # s: longer than the input is correlated, so that steps count as independent
 # of the rms displacement: a separation below it grows as a linear one does; our own choice
 SMALL = 0.01
-# of the network's length; our own choice, above what remains between the runs of a pair that
-# forgets
-ROUND_OFF = 100 * np.finfo(float).eps
 DRAWN_EVERY = 0.1  # s, of the separations that are kept
-COLUMNS = (
-    "twin", "twin_status", "separation_m", "rate_per_s", "rate_se", "rate_steps", "consistency",
-    "saturation",
-)  # fmt: skip
-SEPARATION_COLUMNS = ("setup", "buckling_number", "run", "time_s", "separation_m", "rms_m")
+COLUMNS = {
+    "twin": "name of the pair's second run",
+    "twin_status": "of the second run: ok or unstable",
+    "separation_m": ("how far apart the driven points began", "m"),
+    "rate_per_s": ("at which a small separation grows: the largest Lyapunov exponent", "1/s"),
+    "rate_se": ("standard error of the rate", "1/s"),
+    "rate_steps": f"steps of {STEP:g} s that the rate is the mean of",
+    "consistency": "correlation of the two runs over their last half; 1: the start is forgotten",
+    "saturation": "separation over the last half against unrelated motions of the same size",
+}
+SEPARATION_COLUMNS = {
+    "setup": tables.SCENE["setup"],
+    "buckling_number": tables.SCENE["buckling_number"],
+    "run": "name of the pair's first run",
+    "time_s": ("from the start", "s"),
+    "separation_m": ("distance between the two runs, rms over the readouts", "m"),
+    "rms_m": ("rms displacement of the first run", "m"),
+}
 
 
 class Rate(NamedTuple):
@@ -107,6 +119,14 @@ def saturation(pair: Pair) -> float:
     return float(np.sqrt(((first - second) ** 2).sum() / (first**2 + second**2).sum()))
 
 
+@explained(
+    tables.COLUMNS,
+    tables.CHOICE,
+    tables.OF_PHYSICS,
+    tables.OF_NUMERICS,
+    tables.OF_VERDICTS,
+    COLUMNS,
+)
 def rates(table: pd.DataFrame, response_paths: Sequence[str | Path]) -> pd.DataFrame:
     """One row for each perturbed pair.
 
@@ -115,9 +135,8 @@ def rates(table: pd.DataFrame, response_paths: Sequence[str | Path]) -> pd.DataF
         response_paths: runs of a pair next to one another, the less disturbed one first.
 
     Returns:
-        The table's rows of the first runs and `COLUMNS`: name and status of the second run; how
-        far apart the driven points began (m); rate (1/s), its standard error and number of steps;
-        consistency and saturation, all three NaN where either run was unstable.
+        The table's rows of the first runs and `COLUMNS`; rate, consistency and saturation are NaN
+        where either run was unstable.
 
     Raises:
         ValueError: paths that are not of perturbed pairs.
@@ -127,9 +146,12 @@ def rates(table: pd.DataFrame, response_paths: Sequence[str | Path]) -> pd.DataF
     return table.merge(measured, on="run", validate="one_to_one")
 
 
+@explained(SEPARATION_COLUMNS)
 def separations(response_paths: Sequence[str | Path]) -> pd.DataFrame:
-    """Separation over time of each pair, every `DRAWN_EVERY` s: `SEPARATION_COLUMNS`; rms_m is
-    the rms displacement of the first run. Arguments and errors as in `rates`."""
+    """One row for each perturbed pair and time, every `DRAWN_EVERY` s.
+
+    Arguments and errors as in `rates`.
+    """
     frames = []
     for pair in pairs(response_paths):
         scene = Scene.from_json(pair.first.attrs["scene"])

@@ -8,21 +8,46 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb.meanings import explained
 from fiberweb.model.readouts import of_signals
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import capacity, groups, rank, recording, selection, tables
 from fiberweb.simulation import dataset
 
 CHRONOLOGICAL, SHUFFLED = "chronological", "shuffled"
-GROUP_COLUMNS = ("group", "split", "scoring", "n_signals", "effective_rank", "verdict")
-SCENE_COLUMNS = tables.COLUMNS[: tables.COLUMNS.index(tables.SCALARS[0])]
+GROUP_COLUMNS = {
+    "group": "of signals: see `fiberweb.scoring.groups.mask`",
+    "split": "chronological, or shuffled: C_nl on a random split, as the authors scored this",
+    "scoring": "clean or published",
+    "n_signals": "signals in the group",
+    "effective_rank": rank.RANKS["effective_rank"],
+    "verdict": "whether claims are judged by this force",
+}
 TOTALS = ("c_nl", "c_m", "c_nl_train", "c_m_train")
 GREEDY_COLUMNS = (
-    *SCENE_COLUMNS, "target", "n_chosen", "kind", "fibre", "section", "axis", *TOTALS, "kept",
-    "share", "needed", "status", "run",
+    tables.SCENE
+    | {
+        "target": "what signals are chosen for: c_nl or c_m",
+        "n_chosen": "signals that are chosen so far",
+        "kind": "of the readout of the signal added last: crossing or a midpoint",
+        "fibre": "that it lies on, from 0",
+        "section": "number of this crossing or section along the fibre, from 0",
+        "axis": "of the signal: x or y",
+    }
+    | {name: tables.SCALARS[name] for name in TOTALS}
+    | {
+        "kept": "the target's capacity over that of all signals, test part",
+        "share": "of the capacity that is to be kept",
+        "needed": "fewest signals from which on kept is at least share",
+    }
+    | tables.END
+)
+
+
+@explained(
+    tables.COLUMNS, tables.CHOICE, tables.OF_PHYSICS, tables.OF_NUMERICS, tables.OF_VERDICTS,
+    GROUP_COLUMNS,
 )  # fmt: skip
-
-
 def group_table(
     capacity_paths: Sequence[str | Path],
     response_paths: Sequence[str | Path],
@@ -54,8 +79,9 @@ def group_table(
     return table[[*(name for name in table.columns if name not in GROUP_COLUMNS), *GROUP_COLUMNS]]
 
 
+@explained(GREEDY_COLUMNS)
 def greedy_table(response_path: str | Path, alpha: float, share: float) -> pd.DataFrame:
-    """Signals of one run in the order of forward selection, for C_nl and for C_m.
+    """One row for each target and number of signals, in the order of forward selection.
 
     Args:
         response_path: of the run.
@@ -63,11 +89,8 @@ def greedy_table(response_path: str | Path, alpha: float, share: float) -> pd.Da
         share: of a capacity that is to be kept.
 
     Returns:
-        Columns `GREEDY_COLUMNS`, one row for each target ("c_nl" or "c_m") and number of signals
-        n_chosen, with the signal added last (kind, fibre, section, axis) and the clean scoring of
-        all so far, in either setup. kept: the target's capacity over that of all signals, test
-        part; needed: the least n_chosen from which on it is at least share. An unstable run has
-        one row for each target, without numbers.
+        Columns `GREEDY_COLUMNS`, with the clean scoring of all signals so far, in either setup. An
+        unstable run has one row for each target, without numbers.
     """
     response = dataset.load(response_path)
     scene = _scene_columns(response) | {"share": share}
@@ -129,5 +152,5 @@ def _scene_columns(response) -> dict:
         scene.setup, network.topology, network.n, network.spacing, scene.force, scene.tension,
         scene.buckling_number,
     )  # fmt: skip
-    known = dict(zip(SCENE_COLUMNS, values, strict=True))
+    known = dict(zip(tables.SCENE, values, strict=True))
     return known | {name: response.attrs[name] for name in ("status", "run")}

@@ -18,11 +18,13 @@ from sklearn.model_selection import train_test_split
 from sklearn.preprocessing import StandardScaler
 
 from fiberweb import tables
+from fiberweb.meanings import explained
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import esn, recording
 from fiberweb.scoring.camera import films
 from fiberweb.scoring.capacity import trivial_readouts
 from fiberweb.scoring.regression import scale_input
+from fiberweb.scoring.tables import END, SCENE
 from fiberweb.scoring.tasks import ORDERS as ORDERS
 from fiberweb.scoring.tasks import narma
 from fiberweb.simulation import dataset
@@ -33,10 +35,38 @@ AMPLITUDE = 0.2  # largest u of the task
 DROPPED = 200  # first samples left out of training and test ...
 DROPPED_PART = 0.2  # ... or this part of a recording too short for that
 TESTED = 0.25  # last part of the rest
-CASE = (
-    "setup", "topology", "n", "spacing_m", "force_N", "angle_deg", "body", "frame_step", "verdict",
-    "status", "run",
-)  # fmt: skip
+CASE = {name: SCENE[name] for name in ("setup", "topology", "n", "spacing_m", "force_N")} | {
+    "setup": "whose scoring: published is the authors', described a clean one",
+    "angle_deg": ("motor angle of u = 1; empty where a force drives", "degrees"),
+    "body": "twin (filmed) or network",
+    "frame_step": "every so many frames of the film are read, and taken for consecutive ones",
+    "verdict": "whether claims are judged by this reading: the twin's first",
+    **END,
+}
+TASK = {
+    "case": "run, with the reading of its frame rate",
+    "order": "n of the NARMA-n task",
+    "readout": "network, echo_state (as many nodes as signals), u, derivatives or powers",
+    "timing": "sample whose y is estimated: same (authors' script) or next (caption of Fig. 6)",
+    "n_signals": "of the readout",
+}
+VARIABLES = (
+    CASE
+    | TASK
+    | {
+        "time": ("time of the readouts, from the first frame", "s"),
+        "target": "y of the task, on the test part",
+        "estimate": "estimate of y, by ridge regression",
+    }
+)
+ERRORS = {
+    "rmse": "root of the mean squared error, on the test part",
+    "nrmse": "rmse over the standard deviation of the target",
+    "interdecile_range": "between the 10th and the 90th percentile of the error",
+    "bias": "mean error, estimate - target",
+    "target_mean": "mean of the target",
+    "alpha": "ridge penalty",
+}
 
 
 def series(u: np.ndarray, order: int) -> np.ndarray:
@@ -127,6 +157,7 @@ def estimates(
     )
 
 
+@explained(VARIABLES, attributes={"rate": ("of the task", "Hz"), "alpha": ERRORS["alpha"]})
 def of_runs(
     response_paths: Sequence[str | Path],
     cameras: Sequence[Mapping | None],
@@ -135,16 +166,18 @@ def of_runs(
     alpha: float,
     scoring: str,
 ) -> xr.Dataset:
-    """`estimates` of each response and film along ``case``; errors as there.
+    """What ridge regression makes of the NARMA tasks: targets and estimates of each response and
+    film along ``case``.
+
+    See `estimates`; errors as there.
 
     Args:
         cameras: of each path, keyword arguments of `fiberweb.scoring.camera.films`; None for a
             simulated network, which nothing films.
 
     Returns:
-        With coordinates over case: those of `CASE`. body is "twin" or "network"; verdict says
-        whether it is the twin's first reading of the frame rate, by which claims are judged; setup
-        is "published" for that scoring. Cases have test parts of their own, NaN beyond them.
+        With coordinates over case: those of `CASE`. Cases have test parts of their own, NaN beyond
+        them.
     """
     of_each = []
     for path, camera in zip(response_paths, cameras, strict=True):
@@ -168,16 +201,15 @@ def of_runs(
     return xr.concat(of_each, "case", join="outer", combine_attrs="identical")
 
 
+@explained(CASE, TASK, ERRORS)
 def table(errors: xr.Dataset) -> pd.DataFrame:
-    """How far the estimates are off, on the test part.
+    """One row for each case, order, readout and timing: how far the estimates are off.
 
     Args:
         errors: of `of_runs`.
 
     Returns:
-        One row for each case, order, readout and timing: `CASE`, rmse, nrmse (over the standard
-        deviation of the target), interdecile_range (between the 10th and the 90th percentile of the
-        error, estimate - target), bias (the mean error), target_mean, n_signals and alpha.
+        `CASE`, `TASK` and `ERRORS`.
     """
     rows = pd.concat([_measures(errors.isel(case=[at])) for at in range(errors.sizes["case"])])
     rows = rows.assign(alpha=errors.attrs["alpha"], verdict=rows["verdict"].astype(bool))

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from fiberweb.meanings import explained
 from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 
@@ -42,6 +43,15 @@ def median_amplitude(response: xr.Dataset) -> float:
     return float(np.median(deviation))
 
 
+@explained(
+    tables.COLUMNS,
+    tables.CHOICE,
+    {
+        "noise_m": ("standard deviation of the noise; 0: without noise", "m"),
+        "noise_seed": "number of the draw",
+        "amplitude_m": ("standard deviation in time of a signal without noise, the median", "m"),
+    },
+)
 def table(
     response_paths: Sequence[str | Path],
     choices: Sequence[str],
@@ -59,8 +69,7 @@ def table(
         alpha: ridge penalty.
 
     Returns:
-        A frame of `tables.COLUMNS`, force_choice, noise_m (0 without noise), noise_seed and
-        amplitude_m, the run's `median_amplitude`.
+        A frame of `tables.COLUMNS`, force_choice, noise_m, noise_seed and amplitude_m.
     """
     frames = [
         tables.rows(

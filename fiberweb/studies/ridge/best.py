@@ -6,13 +6,23 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb.meanings import explained
+from fiberweb.scoring.tables import SCENE
 from fiberweb.tables import ordered, read
 
-COLUMNS = ("setup", "spacing_m", "choice", "force_N", "buckling_number", "capacity")
+COLUMNS = {
+    "setup": SCENE["setup"],
+    "spacing_m": SCENE["spacing_m"],
+    "choice": "best_c_nl or best_c_m",
+    "force_N": ("below B = 1, with the largest such capacity", "N"),
+    "buckling_number": SCENE["buckling_number"],
+    "capacity": "which that is: C_nl or C_m of the test part",
+}
 
 
+@explained(COLUMNS)
 def best_unbuckled(ridge: pd.DataFrame) -> pd.DataFrame:
-    """The force below B = 1 with the best C_nl, and the one with the best C_m, of each spacing.
+    """One row for each spacing and choice: the force below B = 1 with the best C_nl or C_m.
 
     Args:
         ridge: the ridge's table of one setup.

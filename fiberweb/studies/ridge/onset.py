@@ -5,26 +5,41 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-BEST = tuple(f"best_{name}{part}" for name in ("c_nl", "c_m") for part in ("", "_force_N", "_B"))
-COLUMNS = (
-    "setup", "spacing_m", "points", "onset_B", "below_B", "above_B", "below_force_N", "fall", *BEST
-)  # fmt: skip
+from fiberweb.meanings import explained
+from fiberweb.scoring.tables import SCENE
+
+COLUMNS = {
+    "setup": SCENE["setup"],
+    "spacing_m": SCENE["spacing_m"],
+    "points": "stable runs of this spacing",
+    "onset_B": "B at which C_nl drops: geometric mean of below_B and above_B",
+    "below_B": "B before the largest fall of C_nl from one run to the next",
+    "above_B": "B after it",
+    "below_force_N": ("force at below_B", "N"),
+    "fall": "by how much C_nl falls there",
+}
+for _name, _words in {"c_nl": "C_nl", "c_m": "C_m"}.items():
+    COLUMNS |= {
+        f"best_{_name}": f"greatest {_words} over all forces",
+        f"best_{_name}_force_N": (f"force at which {_words} is greatest", "N"),
+        f"best_{_name}_B": f"B at which {_words} is greatest",
+    }
 
 
+@explained(COLUMNS)
 def onsets(ridge: pd.DataFrame) -> pd.DataFrame:
-    """The onset of the drop of C_nl at each spacing, by the rule of `claims.yaml`: the geometric
-    mean of the two neighbouring B (Eq. 4) between which C_nl falls most.
+    """One row for each spacing: where C_nl drops, and where capacities are best.
+
+    The onset of the drop, by the rule of `claims.yaml`, is the geometric mean of the two
+    neighbouring B (Eq. 4) between which C_nl falls most.
 
     Args:
         ridge: the ridge's table of one setup. Unstable runs are skipped, so that their stable
             neighbours become neighbours of each other.
 
     Returns:
-        A frame of `COLUMNS`, one row a spacing. ``points`` is the number of stable runs;
-        ``below_B`` and ``above_B`` are the two neighbours, ``below_force_N`` the force (N) of the
-        first, ``fall`` by how much C_nl falls between them; ``best_c_nl`` and ``best_c_m`` are the
-        greatest capacities over all forces, with the force (N) and B they are reached at. Without
-        a fall its columns are NaN; without a stable run those of the best are too.
+        A frame of `COLUMNS`. Without a fall its columns are NaN; without a stable run those of the
+        best are too.
     """
     records = [
         {"setup": frame["setup"].iloc[0], "spacing_m": spacing} | _one(frame)

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pandas as pd
 
+from fiberweb.meanings import explained
 from fiberweb.scoring import capacity, tables
 from fiberweb.simulation import dataset
 
 
+@explained(tables.COLUMNS, tables.CHOICE, {"alpha": capacity.ATTRIBUTES["alpha"]})
 def alphas(
     response_paths: Sequence[str | Path], choices: Sequence[str], alpha: Sequence[float]
 ) -> pd.DataFrame:

@@ -30,6 +30,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from fiberweb.meanings import explained
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import capacity, processing, rank, recording, tables
 from fiberweb.scoring.blocks import capacity_of, interval, redrawn
@@ -38,12 +39,23 @@ from fiberweb.scoring.regression import Options, checked, recall_targets, scale_
 from fiberweb.simulation import dataset
 
 VALUES_EACH = 5  # knots of the training part for each function
-TOTALS = ("ipc", "ipc_low", "ipc_high", "ipc_threshold")
-RANKS = ("n_signals", "rank", "effective_rank", "kernel_rank", "generalisation_rank")
-SPLIT_COLUMNS = ("degree", "delay_s", "capacity")
+TOTALS = {
+    "ipc": "total information-processing capacity, of all degrees and delays",
+    "ipc_low": "lower end of its 95 % interval",
+    "ipc_high": "upper end of its 95 % interval",
+    "ipc_threshold": "capacity of one function above which it counts",
+}
+RANKS = rank.RANKS
+SPLIT_COLUMNS = {
+    "degree": "of the functions of the input",
+    "delay_s": ("the longest delay in them", "s"),
+    "capacity": "that counts at this degree and delay",
+}
 DELAY_LINE = "delay line"
+READOUT = {"readout": f"{tables.READOUT['readout']}; delay line: one tap each knot"}
 
 
+@explained(tables.COLUMNS, tables.CHOICE, TOTALS, RANKS, SPLIT_COLUMNS)
 def table(
     capacity_paths: Sequence[str | Path],
     response_paths: Sequence[str | Path],
@@ -75,8 +87,9 @@ def table(
     return pd.concat(frames, ignore_index=True)
 
 
+@explained(READOUT, TOTALS, RANKS, SPLIT_COLUMNS)
 def baselines(response_path: str | Path, alpha: float, degree: int) -> pd.DataFrame:
-    """The same of readouts that see no network: one row for each of them, degree and delay.
+    """One row for each readout that sees no network, degree and longest delay.
 
     Args:
         response_path: of a run; only its input is used, which every run of the study has.
@@ -132,7 +145,7 @@ def spectrum(
     totals = (processing.total(c, counted), *interval(draws), threshold)
     split = processing.by_degree_and_delay(functions, np.where(counted, c, 0.0))
     rows = [(d, delay / rate, value) for (d, delay), value in split.items()]
-    found = pd.DataFrame(rows, columns=SPLIT_COLUMNS)
+    found = pd.DataFrame(rows, columns=list(SPLIT_COLUMNS))
     return found.assign(
         **dict(zip(TOTALS, totals, strict=True)), **rank.ranks(signals, u, fitted, step, step)
     )

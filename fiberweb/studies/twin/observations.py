@@ -22,8 +22,10 @@ from fiberweb.claims.judge import (
     numbers,
     rises,
 )
+from fiberweb.meanings import explained
 from fiberweb.model.authors import LISTED_AT_500MM
 from fiberweb.scoring import groups
+from fiberweb.studies.twin.tables import CHANGE, FILM_COLUMNS
 
 SMALL, LARGE = 4, 6  # N of the experiment
 PLATEAU = 40.0  # degrees, from which on it lies, by the paper
@@ -31,6 +33,18 @@ NEAR_ZERO = 0.1  # in a capacity; our own choice: the paper draws it and gives n
 RECALLED = 0.8  # c of u 0.5 s ago, by the paper
 KEPT = 0.85  # share of a capacity that counts as kept: what the paper calls so in Fig. 4
 SIMULATED = max(c_m for _, c_m in LISTED_AT_500MM.values())  # the paper's best C_m of Fig. 1
+
+
+COLUMNS = (
+    {"setup": FILM_COLUMNS["setup"]}
+    | CHANGE
+    | {
+        "observation": "id of the claim in claims.csv",
+        "part": "of the claim, in words; empty where nothing of it is known",
+        "verdict": f"{HOLDS}, {DIFFERS} or {NOT_COMPUTED}",
+        "text": "our numbers, or why it does not hold or is not computed",
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -147,16 +161,15 @@ OBSERVATIONS: dict[str, Callable[[pd.DataFrame], Observed]] = {
 }
 
 
+@explained(COLUMNS)
 def table(sensitivity: pd.DataFrame) -> pd.DataFrame:
-    """Which parts of the observations hold for each value of each parameter.
+    """One row for each value of each parameter and part of an observation: whether it holds.
 
     Args:
         sensitivity: of `tables.sensitivity`. E5 is against the paper's own simulations.
 
     Returns:
-        Columns setup, parameter, value, observation, part, verdict ("holds", "differs" or
-        "not computed") and text. An observation of which nothing is known has one row, without a
-        part.
+        Columns `COLUMNS`. An observation of which nothing is known has one row, without a part.
     """
     records = []
     keys = ["setup", "parameter", "value"]
@@ -170,7 +183,7 @@ def table(sensitivity: pd.DataFrame) -> pd.DataFrame:
             for part, failed in found.failed.items():
                 verdict = NOT_COMPUTED if failed is None else DIFFERS if failed else HOLDS
                 records.append((*key, name, part, verdict, failed or found.text))
-    return pd.DataFrame(records, columns=[*keys, "observation", "part", "verdict", "text"])
+    return pd.DataFrame(records, columns=list(COLUMNS))
 
 
 def over_angle(scores: pd.DataFrame, n: int, column: str, readouts: str = groups.ALL) -> pd.Series:

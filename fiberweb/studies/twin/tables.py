@@ -11,10 +11,11 @@ import numpy as np
 import pandas as pd
 
 from fiberweb import tables
+from fiberweb.meanings import explained
 from fiberweb.model.scene import Scene
 from fiberweb.scoring import capacity, groups, recording
 from fiberweb.scoring.camera import films
-from fiberweb.scoring.tables import SCALARS
+from fiberweb.scoring.tables import END, PLACE, SCALARS, TARGET
 from fiberweb.simulation import dataset
 
 if TYPE_CHECKING:
@@ -24,11 +25,29 @@ ALL, REDUCED = groups.ALL, groups.REDUCED
 TRIVIAL = ("u", "derivatives", "powers")  # readouts made of the filmed input alone
 READOUTS = (ALL, *REDUCED, *TRIVIAL)
 RECALL = 0.5  # s; of claim E3
-FILM_COLUMNS = ("setup", "topology", "n", "angle_deg", "stroke_m", "frame_step", "verdict")
-COLUMNS = (*FILM_COLUMNS, "readouts", "n_signals", *SCALARS, "recall_500ms", "status", "run")
-CURVE_COLUMNS = (*FILM_COLUMNS, "readouts", "target", "at", "c", "run")
+FILM_COLUMNS = PLACE | {
+    "setup": "whose scoring: published is the authors', described a clean one",
+    "angle_deg": ("motor angle of u = 1", "degrees"),
+    "stroke_m": ("of the driven point at u = 1", "m"),
+    "frame_step": "every so many frames of the film are read, and taken for consecutive ones",
+    "verdict": "whether claims are judged by this reading of the frame rate",
+    "readouts": "markers: all, or a group; or made of the filmed input: u, derivatives, powers",
+}
+COLUMNS = (
+    FILM_COLUMNS
+    | {"n_signals": "how many there are: x and y of each marker"}
+    | SCALARS
+    | {"recall_500ms": "capacity for u 0.5 s ago: test part"}
+    | END
+)
+CURVE_COLUMNS = FILM_COLUMNS | TARGET | {"c": "capacity: test part", "run": END["run"]}
+CHANGE = {
+    "parameter": "which is changed: a key of twin.sensitivity in the config; none",
+    "value": "that it has, in the unit of that key; empty where nothing is changed",
+}
 
 
+@explained(COLUMNS)
 def by_readouts(
     response_paths: Sequence[str | Path], cameras: Sequence[Mapping], scoring: Mapping
 ) -> pd.DataFrame:
@@ -40,10 +59,8 @@ def by_readouts(
         scoring: options of `fiberweb.scoring.capacity.score_arrays`.
 
     Returns:
-        Columns `COLUMNS`. setup is "published" for the authors' scoring and "described" for the
-        clean one. readouts: the markers of a group, the driven one left out, or `TRIVIAL`.
-        verdict: whether claims are judged by this reading, the first. recall_500ms: c of u 0.5 s
-        ago. Capacities are NaN for an unstable run.
+        Columns `COLUMNS`. Groups are without the driven marker; the first reading is the one that
+        claims are judged by. Capacities are NaN for an unstable run.
     """
     records = []
     for film, row in _films(response_paths, cameras, scoring):
@@ -58,14 +75,14 @@ def by_readouts(
     return tables.ordered(pd.DataFrame(records, columns=list(COLUMNS)))
 
 
+@explained(CURVE_COLUMNS)
 def curves(
     response_paths: Sequence[str | Path], cameras: Sequence[Mapping], scoring: Mapping
 ) -> pd.DataFrame:
-    """Capacity of every single target by the first reading, of all markers and of `TRIVIAL`;
-    arguments as for `by_readouts`.
+    """One row for each run, set of readouts (all markers, or made of the input) and single target,
+    by the first reading of the frame rate.
 
-    Returns:
-        Columns `CURVE_COLUMNS`: target is "order" (at: Legendre order) or "lag" (at: s).
+    Arguments as for `by_readouts`; columns `CURVE_COLUMNS`.
     """
     frames = []
     for film, row in _films(response_paths, _first(cameras), scoring):
@@ -82,20 +99,22 @@ def curves(
     return tables.ordered(made)
 
 
+@explained(COLUMNS, CHANGE)
 def sensitivity(
     response_paths: Sequence[str | Path],
     cameras: Sequence[Mapping],
     choices: Sequence[str],
     scoring: Mapping,
 ) -> pd.DataFrame:
-    """`by_readouts` of the first reading, of runs with one parameter changed and of those with
-    none.
+    """One row for each run with one parameter changed, or none, and set of readouts.
+
+    `by_readouts` of the first reading.
 
     Args:
         choices: of each path, "parameter=value", or another word where nothing is changed.
 
     Returns:
-        Its columns, parameter (empty where nothing is changed) and value (NaN there).
+        Its columns and `CHANGE`.
     """
     frames = []
     for path, camera, choice in zip(response_paths, _first(cameras), choices, strict=True):
