@@ -176,7 +176,9 @@ def _explain(error: ValidationError) -> str:
         keys = ", ".join(section.model_fields)
         name, first = ".".join(path), next(iter(section.model_fields))
         if path[0] == "recordings":
-            return f"{name} = {brief(problem['input'])}: give a list of groups of keys, each of {keys}"
+            return (
+                f"{name} = {brief(problem['input'])}: give a list of groups of keys, each of {keys}"
+            )
         return (
             f"{name} = {brief(problem['input'])}: this is a group of keys ({keys}), given as "
             f"{_nested([*path, first])}"

@@ -198,7 +198,9 @@ def _text(path: Path) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ValueError(f"{path} is no UTF-8 from byte {error.start} on: save it as such") from None
+        raise ValueError(
+            f"{path} is no UTF-8 from byte {error.start} on: save it as such"
+        ) from None
 
 
 def _untabbed(text: str) -> str:

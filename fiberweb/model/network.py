@@ -11,11 +11,12 @@ from itertools import combinations
 
 import numpy as np
 
-from fiberweb.arguments import plain, positive, spelt, whole
+from fiberweb.arguments import check_magnitude, plain, positive, spelt, whole
 
 METRES = " must be a positive length in metres"
 # Beyond these a network alone takes minutes to lay out: a polygon has some n^4 / 24 crossings.
 MOST_FIBRES, MOST_VERTICES = 500, 16
+SHORTEST, LONGEST = 1e-5, 1e5  # m; of shorter polygons crossings would be taken for one
 COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
 
 
@@ -105,9 +106,9 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
             f"spacing = {spacing}"
         )
     if spacing is None:
-        length = positive("length", length, METRES)
+        length = _metres("length", length)
     else:
-        length = positive("spacing", spacing, METRES) * (n + 1)
+        length = _metres("spacing", spacing) * (n + 1)
     spacing = length / (n + 1)
     at = spacing * np.arange(1, n + 1)
     horizontal = [[[0.0, y], [length, y]] for y in at]
@@ -143,7 +144,7 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     _refuse_endless(n, MOST_VERTICES, "vertices")
     if n % 2:
         raise ValueError(f"n = {n}: a polygon has an even number of vertices, for its diameters")
-    diameter, diagonals = positive("diameter", diameter, METRES), plain(diagonals)
+    diameter, diagonals = _metres("diameter", diameter), plain(diagonals)
     if diagonals not in ("all", "skip-one"):
         raise ValueError(f"diagonals = {diagonals!r} is not one of 'all', 'skip-one'")
     # vertex 0 at -x, so that the first diameter runs from left to right
@@ -165,6 +166,12 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
         "polygon", n, diameter, spacing, diagonals, fibres, stations, crossings,
         0, centre + spacing / 2,
     )  # fmt: skip
+
+
+def _metres(name: str, value) -> float:
+    length = positive(name, value, METRES)
+    check_magnitude(name, length, SHORTEST, LONGEST)
+    return length
 
 
 def _refuse_endless(n: int, most: int, of: str) -> None:
