@@ -16,7 +16,7 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs certificates bench env clean
+.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs fuzz random_scenes certificates bench env clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
@@ -45,6 +45,12 @@ smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --no-loadscope-reorder
+
+fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them broken
+	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/fuzz --hypothesis-profile fuzz
+
+random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 20 minutes of CPU time
+	$(VENV)/bin/python -m fiberweb.tools.random_scenes
 
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors

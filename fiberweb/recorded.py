@@ -53,8 +53,8 @@ def recorded(sections: Iterable[RecordingSection]) -> dict[str, Recorded]:
         for name, path in _files(section):
             if len(name.encode()) > LONGEST:
                 raise ValueError(
-                    f"recordings: {name[:100]!r}... is longer than the name of a folder can be: give "
-                    "that recording a name of its own"
+                    f"recordings: {name[:100]!r}... is longer than the name of a folder can be: "
+                    "give that recording a name of its own"
                 )
             if name in found:
                 raise ValueError(

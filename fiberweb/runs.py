@@ -151,8 +151,8 @@ class Asked:
             self._runs += 1
             if self._runs > MOST_RUNS:
                 raise ValueError(
-                    f"the config asks for more than {MOST_RUNS} runs by here: list fewer values, or "
-                    "split it"
+                    f"the config asks for more than {MOST_RUNS} runs by here: list fewer values, "
+                    "or split it"
                 )
             if (network := point.scene.network) not in self._networks:
                 self._networks.add(network)

@@ -9,6 +9,7 @@ of the project for that reason.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import sys
 from collections.abc import Sequence
@@ -66,10 +67,8 @@ def check_entry(entry: str) -> None:
     import yaml
 
     name, _, text = entry.partition("=")
-    try:
+    with contextlib.suppress(yaml.YAMLError):  # what is none is text to Snakemake, too
         _Look("--config", (name,)).through(text)
-    except yaml.YAMLError:
-        pass  # text to Snakemake, too
 
 
 def check(text: str, name: str | Path) -> None:

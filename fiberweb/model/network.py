@@ -108,7 +108,8 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
     if spacing is None:
         length = _metres("length", length)
     else:
-        length = _metres("spacing", spacing) * (n + 1)
+        length = _metres("spacing", spacing)
+        length *= n + 1
     spacing = length / (n + 1)
     at = spacing * np.arange(1, n + 1)
     horizontal = [[[0.0, y], [length, y]] for y in at]

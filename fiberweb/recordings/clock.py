@@ -134,6 +134,8 @@ def even(
         raise ValueError(f"{path}: {sentence}, longer than max_gap = {options.max_gap:g} s")
     # where something is not seen yet or no more, there is nothing to draw a line to
     first, last = seen.first, seen.last
+    if last <= first:
+        raise ValueError(f"{path}: there are no two frames in which all is seen; raise max_gap")
     if first > 0 or last < len(time) - 1:
         cut = f"{first} frames at the start and {len(time) - 1 - last} at the end were cut"
         found.append(Finding("gaps", "repair", f"{cut}: not all was seen there yet, or any more"))

@@ -148,7 +148,8 @@ def _blocks(text: Text, width: int, skip: int):
         yield from pd.read_csv(
             text.path, sep=text.separator, decimal=text.decimal, encoding=text.encoding,
             header=None, names=range(width + 1), skiprows=skip, index_col=False,
-            skip_blank_lines=False, compression=None, chunksize=min(ROWS, CELLS // (width + 1)), low_memory=False, skipinitialspace=True,
+            skip_blank_lines=False, low_memory=False, skipinitialspace=True, compression=None,
+            chunksize=min(ROWS, CELLS // (width + 1)),
         )  # fmt: skip
     except pd.errors.EmptyDataError:
         return

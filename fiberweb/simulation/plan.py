@@ -248,6 +248,6 @@ def _refuse_endless(scene: Scene, step: float) -> None:
     if length > MOST_STEPS * step:
         raise ValueError(
             f"duration = {scene.duration:g} s at sample_rate = {scene.sample_rate:g} Hz takes "
-            f"{length / step:.1g} steps of {step:.3g} s, more than any machine gets through; take a "
-            "shorter one, or larger steps"
+            f"{length / step:.1g} steps of {step:.3g} s, more than any machine gets through; take "
+            "a shorter one, or larger steps"
         )

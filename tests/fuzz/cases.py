@@ -21,14 +21,13 @@ def damaged(draw, content: bytes, tokens: list[bytes]) -> bytes:
     """Bytes of which some are others, gone, there twice, or with a token in between."""
     for _ in range(draw(st.integers(1, 6))):
         at = draw(st.integers(0, len(content)))
-        to = min(len(content), at + draw(st.sampled_from([1, 2, 8, 64, 1000])))
-        kind = draw(st.sampled_from(["other", "gone", "twice", "token", "token", "end"]))
-        put = {
-            "other": lambda: draw(st.binary(min_size=1, max_size=4)) + content[at + 1 :],
-            "gone": lambda: content[to:],
-            "twice": lambda: content[at:to] + content[at:],
-            "token": lambda: draw(st.sampled_from(tokens)) + content[at:],
-            "end": lambda: b"",
-        }[kind]()
-        content = content[:at] + put
+        to = at + draw(st.sampled_from([1, 2, 8, 64, 1000]))
+        put, rest = draw(
+            st.one_of(
+                st.tuples(st.binary(min_size=1, max_size=4), st.just(at + 1)),
+                st.tuples(st.sampled_from(tokens), st.just(at)),
+                st.sampled_from([(b"", to), (content[at:to], at), (b"", len(content))]),
+            )
+        )
+        content = content[:at] + put + content[rest:]
     return content

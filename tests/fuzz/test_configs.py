@@ -29,7 +29,7 @@ ANYTHING = st.recursive(
     max_leaves=12,
 )
 SMALL = [values(path) for path in SMOKE]
-KEYS = sorted(LEAVES) + [("results",), ("published_tables",)]
+KEYS = [*sorted(LEAVES), ("results",), ("published_tables",)]
 KEYS += [("recordings", name) for name in ("path", "name", "read", "card")]
 
 
