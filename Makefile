@@ -49,6 +49,12 @@ test: $(STAMP) ## the tests
 test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons: half an hour
 	ANYWHERE=1 $(VENV)/bin/python -m pytest tests/anywhere
 
+fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them broken
+	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/fuzz --hypothesis-profile fuzz
+
+random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 20 minutes of CPU time
+	$(VENV)/bin/python -m fiberweb.tools.random_scenes
+
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
 

@@ -15,6 +15,8 @@ import numpy as np
 from fiberweb.errors import unknown_key
 
 Called = TypeVar("Called", bound=Callable)
+# of a number in SI units that is not 0; of others the powers and products cannot all be held
+LEAST, MOST = 1e-30, 1e30
 OWN = frozenset({float, int, bool, str, type(None)})  # nothing to convert, and the most frequent
 
 
@@ -54,6 +56,17 @@ def positive(name: str, value, rule: str) -> float:
     if type(number) not in (float, int) or not 0 < number < math.inf:
         raise ValueError(f"{name} = {shown(value)}{rule}")
     return float(number)
+
+
+def check_magnitude(name: str, value, least: float = LEAST, most: float = MOST) -> None:
+    """Raise ValueError for a number, or one of a tuple, that is of no magnitude to compute with; 0
+    and infinity are of any."""
+    for each in value if isinstance(value, tuple) else (value,):
+        if type(each) is float and each and not least <= abs(each) <= most and abs(each) < math.inf:
+            raise ValueError(
+                f"{name} = {each:g}: its magnitude has to be between {least:g} and {most:g}, in SI "
+                "units"
+            )
 
 
 def true_or_false(name: str, value) -> bool:

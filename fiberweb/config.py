@@ -19,7 +19,7 @@ from typing import Annotated, Self, get_args, get_origin
 from pydantic import BeforeValidator, ValidationError, create_model, model_validator
 
 from fiberweb import studies
-from fiberweb.errors import location, sentence
+from fiberweb.errors import brief, location, on_one_line, sentence
 from fiberweb.folders import folder, missing_disk
 from fiberweb.layers import is_number, overlay, read
 from fiberweb.model.scene import Scene
@@ -128,7 +128,7 @@ def load(*layers: Mapping | str | Path) -> Config:
     try:
         return Config.model_validate(values)
     except ValidationError as error:
-        raise ValueError(_explain(error)) from None
+        raise ValueError(on_one_line(_explain(error))) from None
 
 
 def check_folders(config: Config) -> None:
@@ -161,6 +161,9 @@ def _explain(error: ValidationError) -> str:
     problem = error.errors()[0]
     if problem["type"] == "value_error":
         return str(problem["ctx"]["error"])
+    if problem["type"] == "invalid_key":  # YAML reads on, off, yes and no as truth values
+        within = "".join(f"{part}." for part in problem["loc"][:-1])
+        return f"unknown key {within}{brief(problem['input'])}: a key is a word, so quote it"
     path = [part for part in location(problem) if isinstance(part, str)]
     if problem["type"] == "missing":
         name = sentence(error).partition(" = ")[0]
@@ -173,9 +176,11 @@ def _explain(error: ValidationError) -> str:
         keys = ", ".join(section.model_fields)
         name, first = ".".join(path), next(iter(section.model_fields))
         if _listed(path):
-            return f"{name} = {problem['input']!r}: give a list of groups of keys, each of {keys}"
+            return (
+                f"{name} = {brief(problem['input'])}: give a list of groups of keys, each of {keys}"
+            )
         return (
-            f"{name} = {problem['input']!r}: this is a group of keys ({keys}), given as "
+            f"{name} = {brief(problem['input'])}: this is a group of keys ({keys}), given as "
             f"{_nested([*path, first])}"
         )
     text = sentence(error)

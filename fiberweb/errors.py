@@ -3,15 +3,33 @@
 from __future__ import annotations
 
 import re
+import reprlib
 from difflib import get_close_matches
 from itertools import takewhile
+
+SHOWN = 40  # names, of those that exist
+_BRIEF = reprlib.Repr()
+_BRIEF.maxstring = _BRIEF.maxother = 200
+_BRIEF.maxlist = _BRIEF.maxtuple = 20
+brief = _BRIEF.repr  # a value as a sentence can hold it
+
+
+def on_one_line(text: str) -> str:
+    """A sentence with whatever it quotes: what cannot be printed is escaped."""
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
 
 
 def unknown_key(key: str, known, where: str = "", kind: str = "key") -> str:
     """The sentence for a key that does not exist, with the nearest one that does, or all."""
-    near = get_close_matches(str(key), [str(k) for k in known], n=1)
+    key, known = str(key)[:100], list(map(str, known))
+    near = get_close_matches(key, known, n=1)
     if not near:
-        return f"unknown {kind} '{where}{key}': the valid {kind}s are {', '.join(map(str, known))}"
+        shown = ", ".join(name[:100] for name in known[:SHOWN])
+        more = f" and {len(known) - SHOWN} more" if len(known) > SHOWN else ""
+        return f"unknown {kind} '{where}{key}': the valid {kind}s are {shown}{more}"
     return f"unknown {kind} '{where}{key}': the nearest valid {kind} is '{where}{near[0]}'"
 
 
@@ -30,7 +48,7 @@ def sentence(error, where: str = "", known=()) -> str:
     if problem["type"] == "value_error":
         return problem["msg"].removeprefix("Value error, ")
     text = "List at least one" if problem["type"] == "too_short" else problem["msg"]
-    return f"{'.'.join([*above, key])} = {problem['input']!r}: {text[0].lower()}{text[1:]}"
+    return f"{'.'.join([*above, key])} = {brief(problem['input'])}: {text[0].lower()}{text[1:]}"
 
 
 def location(problem) -> list:

@@ -7,17 +7,21 @@ from datetime import date
 from glob import glob
 from pathlib import Path
 
+from fiberweb.errors import brief
+
 # where disks appear once they are mounted, each in a folder of its own or of its user's
 MOUNTS = (Path("/mnt"), Path("/media"), Path("/run/media"), Path("/Volumes"))
 TABLE_OF_DISKS = Path("/etc/fstab")
-MARKS = "{}<>*?[]\n"  # patterns to Snakemake
+MARKS = "{}<>*?[]"  # patterns to Snakemake
+LONGEST = 1000  # characters; no file system takes much more
 
 
 def folder(value: object, key: str) -> object:
     """A folder's name in the one form that names it: without ~, variables, ./, // and / at the end.
 
     Raises:
-        ValueError: it is no text, or has characters that mean something else; one sentence.
+        ValueError: it is no text, is too long, or has characters that mean something else or cannot
+            be printed; one sentence.
     """
     if value is None or value == "":
         return value
@@ -28,6 +32,11 @@ def folder(value: object, key: str) -> object:
         )
     if not isinstance(value, (str, Path)):
         return value
+    if len(str(value)) > LONGEST or not str(value).isprintable():
+        raise ValueError(
+            f"{key} = {brief(str(value))}: a name has at most {LONGEST} characters, all of which "
+            "can be printed"
+        )
     text = os.path.normpath(os.path.expanduser(os.path.expandvars(value)))
     if found := [mark for mark in MARKS if mark in text]:
         raise ValueError(

@@ -6,41 +6,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import date
 from pathlib import Path
 
+from fiberweb.arguments import shown
+from fiberweb.untrusted import called, check_entry, values
+
 
 def read(path: str | Path) -> Mapping:
     """The keys of a YAML or JSON file.
 
     Raises:
-        ValueError: one sentence, if it is neither, or gives a key twice.
+        ValueError: one sentence, if it is neither, gives a key twice, or is refused otherwise by
+            `fiberweb.untrusted`.
     """
-    import yaml
-
-    try:
-        values = yaml.safe_load(_text(path))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f" in line {mark.line + 1}" if mark else ""
-        raise ValueError(
-            f"{path} is no YAML: {getattr(error, 'problem', None) or 'it cannot be read'}{where}"
-        ) from None
-    if values is None:
+    held = values(path)
+    if held is None:
         return {}
-    if not isinstance(values, Mapping):
-        raise ValueError(f"{path} holds {values!r}: a config is a group of keys")
-    check_keys(path)
-    return values
-
-
-def check_keys(path: str | Path) -> None:
-    """Raise ValueError, one sentence, if a file gives a key twice: YAML would keep the last one."""
-    import yaml
-
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the first is ten times as fast
-    # JSON may be indented by tabs, which YAML refuses; no value of either holds one
-    node = yaml.compose(_text(path).replace("\t", " "), Loader=loader)
-    for key, first, second in _twice(node, ()):
-        lines = f"line {first}" if first == second else f"lines {first} and {second}"
-        raise ValueError(f"{path} gives {key} twice, in {lines}: keep one of them")
+    if not isinstance(held, Mapping):
+        raise ValueError(f"{path} holds {shown(held)}: a config is a group of keys")
+    return held
 
 
 def check_call(arguments: Sequence[str]) -> None:
@@ -50,10 +32,12 @@ def check_call(arguments: Sequence[str]) -> None:
     given in two parts are one group.
     """
     given = set()
-    for key in _given_keys(arguments):
-        if key in given:
-            raise ValueError(f"--config gives {key} twice: keep one of them")
-        given.add(key)
+    for entry in called(arguments).config:
+        check_entry(entry)
+        for key in _keys(entry):
+            if key in given:
+                raise ValueError(f"--config gives {key} twice: keep one of them")
+            given.add(key)
 
 
 def overlay(below: Mapping, above: Mapping) -> dict:
@@ -102,22 +86,15 @@ def _typed(value):
     return value if isinstance(read, (Mapping, list, date)) else read
 
 
-def _given_keys(arguments: Sequence[str]) -> Iterator[str]:
-    """Every key that follows ``--config``, within groups as well."""
+def _keys(entry: str) -> Iterator[str]:
+    """The key of an entry of ``--config``, or those within it."""
     import yaml
 
-    within = False
-    for argument in arguments:
-        option, _, first = argument.partition("=")
-        if argument.startswith("-"):
-            within = option in ("--config", "-C")
-            argument = first
-        name, _, text = argument.partition("=")
-        if within and name:
-            try:
-                yield from _leaves(yaml.compose(text), (name,))
-            except yaml.YAMLError:  # text to Snakemake, too
-                yield name
+    name, _, text = entry.partition("=")
+    try:
+        yield from _leaves(yaml.compose(text), (name,))
+    except yaml.YAMLError:  # text to Snakemake, too
+        yield name
 
 
 def _leaves(node, above: tuple[str, ...]) -> Iterator[str]:
@@ -128,25 +105,3 @@ def _leaves(node, above: tuple[str, ...]) -> Iterator[str]:
         return
     for key, value in node.value:
         yield from _leaves(value, (*above, str(key.value)))
-
-
-def _text(path: str | Path) -> str:
-    return Path(path).read_text(encoding="utf-8-sig")
-
-
-def _twice(node, above: tuple[str, ...]) -> Iterator[tuple[str, int, int]]:
-    """(key, line, line) of every key that a mapping has twice, and of those within it."""
-    import yaml
-
-    if isinstance(node, yaml.SequenceNode):
-        for each in node.value:
-            yield from _twice(each, above)
-    if not isinstance(node, yaml.MappingNode):
-        return
-    lines: dict[str, int] = {}
-    for key, value in node.value:
-        name, line = str(key.value), key.start_mark.line + 1
-        if name in lines:
-            yield ".".join((*above, name)), lines[name], line
-        lines[name] = line
-        yield from _twice(value, (*above, name))

@@ -19,6 +19,7 @@ from fiberweb.scoring.card_options import CardOptions
 from fiberweb.sections import Section, key
 
 SUFFIXES = {suffix for reader in READERS.values() for suffix in reader.suffixes}
+LONGEST = 240  # bytes of a name; file systems have 255, and a log adds some
 Place = Annotated[str, BeforeValidator(lambda value: folder(value, "recordings.path"))]
 
 
@@ -44,12 +45,17 @@ def recorded(sections: Iterable[RecordingSection]) -> dict[str, Recorded]:
     when it is read, so that the others are not held up.
 
     Raises:
-        ValueError: two have one name, or a folder has no recording; one sentence.
+        ValueError: two have one name, one is too long, or a folder has no recording; one sentence.
     """
     found: dict[str, Recorded] = {}
     for section in sections:
         read, card = (part.model_dump(exclude_unset=True) for part in (section.read, section.card))
         for name, path in _files(section):
+            if len(name.encode()) > LONGEST:
+                raise ValueError(
+                    f"recordings: {name[:100]!r}... is longer than the name of a folder can be: "
+                    "give that recording a name of its own"
+                )
             if name in found:
                 raise ValueError(
                     f"recordings: {found[name].path} and {path} are both called {name!r}: give one "
@@ -89,5 +95,6 @@ def _files(section: RecordingSection) -> Iterator[tuple[str, Path]]:
 
 
 def _plain(name: str) -> str:
-    """A name that a folder and Snakemake's patterns can have."""
-    return re.sub(r"[^\w.-]+", "-", name)
+    """A name that a folder and Snakemake's patterns can have, and that leads to no other folder, as
+    `..` would."""
+    return re.sub(r"[^\w.-]+|^\.+", "-", name)

@@ -20,7 +20,10 @@ from fiberweb.model.authors import SKIPPED_FRAMES
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.limits import check_frames
 from fiberweb.simulation.plan import expected_seconds, request
+from fiberweb.studies.base import Point
 
+# What a config may ask for in all: the paper's has 5256 runs, of networks with 19 864 readouts.
+MOST_RUNS, MOST_READOUTS = 20_000, 250_000
 DIGITS = 12  # of the hash in a name; six were shared by seeds among some ten thousand
 # what a scene may have in place of its own without another limit of the step
 AT_ANY = {"force": 1.0, "seed": 0, "duration": 1.0, "disturbance": 0.0, "centre_lines": False}
@@ -140,23 +143,54 @@ def check(table: Iterable[Run], checked: set[tuple] | None = None) -> None:
             checked.add(run.kind)
 
 
-def runs(config: Config, study: str, setup: str, best: Mapping | None = None) -> list[Run]:
+class Asked:
+    """How much a config asks for, counted while its runs are listed, so that there is an end to
+    it."""
+
+    def __init__(self):
+        self._runs, self._networks, self._readouts = 0, set(), 0
+
+    def counted(self, points: Iterable[Point]) -> Iterator[Point]:
+        """The points; ValueError, one sentence, where they become too many."""
+        for point in points:
+            self._runs += 1
+            if self._runs > MOST_RUNS:
+                raise ValueError(
+                    f"the config asks for more than {MOST_RUNS} runs by here: list fewer values, "
+                    "or split it"
+                )
+            if (network := point.scene.network) not in self._networks:
+                self._networks.add(network)
+                self._readouts += network.readouts
+            if self._readouts > MOST_READOUTS:
+                raise ValueError(
+                    f"n = {network.n}: all networks of the config have more than {MOST_READOUTS} "
+                    "readouts by here: take fewer or smaller ones"
+                )
+            yield point
+
+
+def runs(
+    config: Config, study: str, setup: str, best: Mapping | None = None, asked: Asked | None = None
+) -> list[Run]:
     """The runs of a study in one setup, in its order, each once for each choice of the force.
 
     Args:
         config: the whole config.
         study, setup: names.
         best: as for `fiberweb.config.lab`; only studies that start from it look at it.
+        asked: what counts these and others together.
 
     Raises:
-        ValueError: one sentence, of a scene that excludes itself.
+        ValueError: one sentence, of a scene that excludes itself, or of too many.
     """
     if setup not in studies.setups(study):
         return []
     published = setup == "published"
     general = {} if published else _given(config.numerics.model_dump())
     with _named(f"a run of {study} in the setup {setup}"):
-        points = [*studies.load(study).points(getattr(config, study), lab(config, setup, best))]
+        points = studies.load(study).points(getattr(config, study), lab(config, setup, best))
+        points = [*(asked or Asked()).counted(points)]
     table = {}
     for point in points:
         scoring = {"alpha": config.scoring.alpha}
@@ -173,12 +207,13 @@ def run_table(config: Config) -> dict[str, Run]:
     """Every run that any study of any setup may ask for, by name.
 
     Raises:
-        ValueError: two scenes have one name.
+        ValueError: two scenes have one name, or there are too many.
     """
     table: dict[str, Run] = {}
+    asked = Asked()
     for study in studies.STUDIES:
         for setup in studies.setups(study):
-            for run in runs(config, study, setup):
+            for run in runs(config, study, setup, asked=asked):
                 same_scene(table.setdefault(run.name, run), run)
     return table
 

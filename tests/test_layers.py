@@ -3,7 +3,7 @@
 import pytest
 
 from fiberweb.config import load
-from fiberweb.layers import check_call, check_keys, read, typed
+from fiberweb.layers import check_call, read, typed
 
 TWICE = {
     "yaml": ("scene:\n  duration: 20\n  seed: 1\n  duration: 30\n", "scene.duration", "2 and 4"),
@@ -22,7 +22,7 @@ def test_a_key_given_twice_is_refused_with_its_lines(tmp_path, text, key, lines)
     path = tmp_path / "my.yaml"
     path.write_text(text, encoding="utf-8", newline="")
     with pytest.raises(ValueError, match=rf"my\.yaml gives {key} twice, in lines? {lines}: keep"):
-        check_keys(path)
+        read(path)
 
 
 def test_a_config_that_gives_a_key_twice_is_not_loaded(tmp_path):

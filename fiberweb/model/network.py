@@ -11,12 +11,13 @@ from itertools import combinations
 
 import numpy as np
 
-from fiberweb.arguments import plain, positive, shown, spelt, whole
+from fiberweb.arguments import check_magnitude, plain, positive, shown, spelt, whole
 
 METRES = " must be a positive length in metres"
 # Beyond these a network alone takes minutes to lay out: a polygon has some n^4 / 24 crossings.
 MOST_FIBRES, MOST_VERTICES = 500, 16
 MOST_STRAIGHT = 100  # fibres of a web, whose crossings are looked for one by one
+SHORTEST, LONGEST = 1e-5, 1e5  # m; of shorter polygons crossings would be taken for one
 COINCIDENT = 1e-9  # two crossings closer than this (m) are one: several fibres through a point
 
 
@@ -110,9 +111,10 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
             f"spacing = {spacing}"
         )
     if spacing is None:
-        length = positive("length", length, METRES)
+        length = _metres("length", length)
     else:
-        length = positive("spacing", spacing, METRES) * (n + 1)
+        length = _metres("spacing", spacing)
+        length *= n + 1
     spacing = length / (n + 1)
     at = spacing * np.arange(1, n + 1)
     horizontal = [[[0.0, y], [length, y]] for y in at]
@@ -148,7 +150,7 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     _refuse_endless(n, MOST_VERTICES, "vertices")
     if n % 2:
         raise ValueError(f"n = {n}: a polygon has an even number of vertices, for its diameters")
-    diameter, diagonals = positive("diameter", diameter, METRES), plain(diagonals)
+    diameter, diagonals = _metres("diameter", diameter), plain(diagonals)
     if diagonals not in ("all", "skip-one"):
         raise ValueError(f"diagonals = {diagonals!r} is not one of 'all', 'skip-one'")
     # vertex 0 at -x, so that the first diameter runs from left to right
@@ -223,6 +225,8 @@ def _checked(given) -> np.ndarray:
     if (length < COINCIDENT).any():
         fibre = int(np.argmin(length))
         raise ValueError(f"fibre {fibre} of the web has no length: its two ends are one point")
+    for each in (float(length.min()), float(length.max())):
+        check_magnitude("length of a fibre", each, SHORTEST, LONGEST)
     for a, (near, far) in enumerate(fibres):
         along = (far - near) / length[a]
         for b in range(len(fibres)):
@@ -260,6 +264,12 @@ def _refuse_loose(fibres: np.ndarray, stations, driven_fibre: int) -> None:
             f"fibre {min(loose)} of the web would never move: no crossings lead from it to driven "
             f"fibre {driven_fibre}; let it cross another one, or leave it out"
         )
+
+
+def _metres(name: str, value) -> float:
+    length = positive(name, value, METRES)
+    check_magnitude(name, length, SHORTEST, LONGEST)
+    return length
 
 
 def _refuse_endless(n: int, most: int, of: str, name: str = "n") -> None:

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, get_type_hints
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
-from fiberweb.arguments import plain, shown, spelt
+from fiberweb.arguments import check_magnitude, plain, shown, spelt
 from fiberweb.errors import sentence
 from fiberweb.model import authors, buckling
 from fiberweb.model.material import Fibres
@@ -139,6 +139,7 @@ class Scene:
                 value = adapter.validate_python(plain(getattr(self, name)))
             except ValidationError as error:
                 raise ValueError(sentence(error, name)) from None
+            check_magnitude(name, value)
             object.__setattr__(self, name, value)
         topology = self.network.topology
         if topology not in SETUPS[self.setup]:

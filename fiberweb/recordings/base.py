@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fiberweb.simulation.memory import of_this_machine
+
 SEVERITIES = ("ok", "note", "repair", "warning", "refused")
 
 
@@ -62,12 +64,24 @@ class Raw:
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "px": 1.0}  # in m; pixels stay pixels
 
 
+def check_size(path: Path, values: float) -> None:
+    """Raise ValueError, one sentence, if so many numbers, and what is made of them, do not fit in
+    memory: a small file may hold, or stand for, a great many."""
+    if not 3 * 8 * values <= of_this_machine():  # what cannot be counted does not, either
+        raise ValueError(
+            f"{path} stands for {values:.3g} numbers, which take {24e-9 * values:.3g} GB, and this "
+            f"machine has {1e-9 * of_this_machine():.3g} GB of memory: cut it into shorter files"
+        )
+
+
 def head(path: Path) -> bytes:
     """The first bytes of a file, a million.
 
     Raises:
         ValueError: it is not there, cannot be read, or is empty; one sentence.
     """
+    if path.exists() and not path.is_file():  # opening a pipe would wait for ever
+        raise ValueError(f"{path} is no file: name one")
     try:
         with path.open("rb") as file:
             first = file.read(1 << 20)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fiberweb.recordings.base import Finding, Raw
+from fiberweb.recordings.base import Finding, Raw, check_size
 from fiberweb.recordings.options import TIME_UNITS, Reading
 
 JITTER = 0.01  # of a frame: what is off by less counts as even, as scoring has it
@@ -134,12 +134,15 @@ def even(
         raise ValueError(f"{path}: {sentence}, longer than max_gap = {options.max_gap:g} s")
     # where something is not seen yet or no more, there is nothing to draw a line to
     first, last = seen.first, seen.last
+    if last <= first:
+        raise ValueError(f"{path}: there are no two frames in which all is seen; raise max_gap")
     if first > 0 or last < len(time) - 1:
         cut = f"{first} frames at the start and {len(time) - 1 - last} at the end were cut"
         found.append(Finding("gaps", "repair", f"{cut}: not all was seen there yet, or any more"))
     start = time[first]
-    count = int(np.floor((time[last] - start) * rate + JITTER)) + 1
-    grid = np.arange(count) / rate
+    count = np.floor((time[last] - start) * rate + JITTER) + 1
+    check_size(path, count * (2 * len(kept) + 1))
+    grid = np.arange(count := int(count)) / rate
     as_it_is = jitter <= JITTER and count == last - first + 1
     values = raw.positions[first : last + 1]
     drive = None if raw.input is None else raw.input[first : last + 1]

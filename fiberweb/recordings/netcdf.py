@@ -18,7 +18,12 @@ def recognises(path: Path, head: bytes) -> bool:
 
 def read(path: Path, options: Reading) -> Raw:
     """Read a NetCDF file; errors as `fiberweb.recordings.arrays.recording` has them."""
-    data = dataset.load(path)
+    try:
+        data = dataset.load(path)
+    except ValueError:
+        raise
+    except Exception as error:  # of broken attributes, whatever they lead to
+        raise ValueError(f"{path} cannot be read ({error}): it may be damaged") from None
     named = {key: getattr(options, key) or value for key, value in DEFAULTS.items()}
 
     def get(name: str):

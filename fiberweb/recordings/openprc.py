@@ -31,7 +31,7 @@ def read(path: Path, options: Reading) -> Raw:
     with hdf5.opened(path) as file:
 
         def get(name: str) -> np.ndarray:
-            return np.asarray(file[name])
+            return hdf5.read(path, file, name)
 
         chosen = options.model_copy(update=named)
         raw = arrays.recording(path, chosen, get, hdf5.arrays(file))

@@ -12,7 +12,7 @@ import xarray as xr
 from pydantic import ValidationError
 
 from fiberweb.arguments import check_names, plain
-from fiberweb.errors import sentence
+from fiberweb.errors import on_one_line, sentence
 from fiberweb.meanings import RUN, explained
 from fiberweb.model.readouts import AXES
 from fiberweb.recordings import READERS, checks, clock
@@ -39,6 +39,15 @@ def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
     """See `fiberweb.recordings.read_recording`."""
     check_names(options, [*Reading.model_fields, "quiet"])
     path = Path(path)
+    try:
+        return _read(path, quiet, options)
+    except MemoryError:
+        raise ValueError(f"{path} does not fit in memory: cut it into shorter files") from None
+    except ValueError as error:
+        raise ValueError(on_one_line(str(error))) from None
+
+
+def _read(path: Path, quiet: bool, options: dict) -> xr.Dataset:
     try:
         chosen = Reading(**plain(options))
     except ValidationError as error:
@@ -87,7 +96,8 @@ def read(path: str | Path, quiet: bool, options: dict) -> xr.Dataset:
         },
     )  # fmt: skip
     if not quiet:
-        print(f"{path}:", *(f"  {f.severity:8}{f.name}: {f.sentence}" for f in found), sep="\n")
+        lines = (on_one_line(f"  {f.severity:8}{f.name}: {f.sentence}") for f in found)
+        print(f"{path}:", *lines, sep="\n")
     return response
 
 

@@ -13,9 +13,10 @@ import numpy as np
 import pandas as pd
 
 from fiberweb.errors import unknown_key
-from fiberweb.recordings.base import Finding, head
+from fiberweb.recordings.base import Finding, check_size, head
 
-ROWS = 200_000  # held as text at once
+ROWS, CELLS = 200_000, 10_000_000  # held as text at once
+MOST_COLUMNS = 20_000
 
 
 @dataclass
@@ -50,7 +51,14 @@ def sniff(path: Path) -> Text:
     lines = text.split("\n")[:20]
     header = next((line for line in lines if line.strip()), "")
     separator = max("\t;,", key=header.count)
-    cells = list(csv.reader(lines, delimiter=separator))
+    try:
+        cells = list(csv.reader(lines, delimiter=separator))
+    except csv.Error as error:
+        raise ValueError(f"{path} cannot be read as a table: {error}") from None
+    if (width := max(map(len, cells))) > MOST_COLUMNS:
+        raise ValueError(
+            f"{path} has {width} columns: more than {MOST_COLUMNS} are no recording: export fewer"
+        )
     decimal = "."
     values = [cell.strip() for row in cells[1:] for cell in row]
     if separator != "," and any(_decimal_comma(value) for value in values):
@@ -92,6 +100,7 @@ def numbers(
                 column = _as_numbers(text, column, name, start)
             parts[name].append(column.to_numpy(float))
         start += len(block)
+        check_size(text.path, start * len(wanted))
     if start == skip + 1:
         raise ValueError(f"{text.path} has a header and no rows of numbers")
     return {name: np.concatenate(parts.pop(name)) for name in wanted}, skip + 1
@@ -139,7 +148,8 @@ def _blocks(text: Text, width: int, skip: int):
         yield from pd.read_csv(
             text.path, sep=text.separator, decimal=text.decimal, encoding=text.encoding,
             header=None, names=range(width + 1), skiprows=skip, index_col=False,
-            skip_blank_lines=False, chunksize=ROWS, low_memory=False, skipinitialspace=True,
+            skip_blank_lines=False, low_memory=False, skipinitialspace=True, compression=None,
+            chunksize=min(ROWS, CELLS // (width + 1)),
         )  # fmt: skip
     except pd.errors.EmptyDataError:
         return

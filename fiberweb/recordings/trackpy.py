@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from fiberweb.recordings import text as texts
-from fiberweb.recordings.base import Raw
+from fiberweb.recordings.base import Raw, check_size
 from fiberweb.recordings.options import Reading
 
+WHOLE = 2**53  # from here on a number in a file may not be the one that was meant
 COLUMNS = ("x", "y", "frame", "particle")
 
 
@@ -32,7 +33,7 @@ def read(path: Path, options: Reading) -> Raw:
     whole = {}
     for name in ("frame", "particle"):
         values = columns[name]
-        wrong = ~(values == np.round(values))  # NaN as well
+        wrong = ~((values == np.round(values)) & (np.abs(values) < WHOLE))  # NaN as well
         if wrong.any():
             at = int(np.argmax(wrong))
             raise ValueError(
@@ -41,6 +42,7 @@ def read(path: Path, options: Reading) -> Raw:
         whole[name] = values.astype(int)
     frame, (particles, number) = whole["frame"], np.unique(whole["particle"], return_inverse=True)
     frame -= frame.min()
+    check_size(path, 2 * (float(frame.max()) + 1) * len(particles))
     point = frame * len(particles) + number
     _, first, counts = np.unique(point, return_index=True, return_counts=True)
     if (counts > 1).any():

@@ -10,6 +10,7 @@ import xarray as xr
 
 from fiberweb import timed
 from fiberweb.model.scene import Scene
+from fiberweb.simulation.memory import of_this_machine
 
 MOTIONS = ("displacement", "centre_line")
 # A motion is stored as multiples of a power of two between 2^-21 and 2^-20 of its own rms in the
@@ -51,10 +52,15 @@ def load(path: str | Path) -> xr.Dataset:
 
     Raises:
         FileNotFoundError: there is no such file.
-        ValueError: it is broken, one sentence.
+        ValueError: it is broken, or larger than memory; one sentence.
     """
     try:
         with timed.part("read"), xr.open_dataset(path, engine="netcdf4") as data:
+            if data.nbytes > of_this_machine():  # a file of some bytes may say so
+                raise ValueError(
+                    f"{path} holds {1e-9 * data.nbytes:.3g} GB, and this machine has "
+                    f"{1e-9 * of_this_machine():.3g} GB of memory; read it on a larger one"
+                )
             return data.load()
     except FileNotFoundError:
         raise

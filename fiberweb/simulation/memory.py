@@ -34,16 +34,17 @@ def needed(scene: Scene, elements_per_section: int | None) -> dict[str, float]:
 def check(scene: Scene, elements_per_section: int | None) -> None:
     """Raise ValueError, one sentence, if a run needs more memory than this machine has."""
     parts = needed(scene, elements_per_section)
-    if (total := sum(parts.values())) > _of_this_machine():
+    if (total := sum(parts.values())) > of_this_machine():
         largest = max(parts, key=parts.get)
         raise ValueError(
             f"{largest} need some {1e-9 * total:.3g} GB of memory, and this machine has "
-            f"{1e-9 * _of_this_machine():.3g} GB; take less of them"
+            f"{1e-9 * of_this_machine():.3g} GB; take less of them"
         )
 
 
 @cache
-def _of_this_machine() -> int:
+def of_this_machine() -> int:
+    """Bytes of memory that there are."""
     import psutil
 
     return psutil.virtual_memory().total

@@ -259,8 +259,10 @@ def _check_accuracy(scene: Scene, accuracy, given: dict) -> None:
 
 def _refuse_endless(scene: Scene, step: float) -> None:
     """Refuse a run that no machine comes to the end of."""
-    if scene.duration > MOST_STEPS * step:
+    length = max(scene.duration, 1.0 / scene.sample_rate)  # two samples at least
+    if length > MOST_STEPS * step:
         raise ValueError(
-            f"duration = {scene.duration:g} s takes {scene.duration / step:.1g} steps of "
-            f"{step:.3g} s, more than any machine gets through; take a shorter one, or larger steps"
+            f"duration = {scene.duration:g} s at sample_rate = {scene.sample_rate:g} Hz takes "
+            f"{length / step:.1g} steps of {step:.3g} s, more than any machine gets through; take "
+            "a shorter one, or larger steps"
         )

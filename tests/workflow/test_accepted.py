@@ -99,7 +99,7 @@ def test_every_run_of_an_accepted_config_starts(changed):
         ({"scene": {"sample_rate": 256.0}, "narma": {"rate": 10.0}}, "narma.rate = 10 Hz"),
         ({"scene": {"duration": 1e7}}, "GB of memory"),
         ({"memory_origin": {"filter_element": [1e-6]}}, "elements far shorter than a fibre"),
-        ({"scene": {"density": 1e-300}}, "without a stable time step"),
+        ({"scene": {"density": 1e-300}}, "density = 1e-300: its magnitude"),
         ({"buckling": {"buckling": [0.9000001, 0.9]}}, "buckling.buckling holds 0.9 twice"),
         ({"topology": {"polygon": [60]}}, "n = 60: more than 16 vertices"),
         ({"scene": {"sample_rate": 0.005}}, "sample_rate|frame"),

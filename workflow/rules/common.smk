@@ -11,7 +11,7 @@ from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
 from fiberweb.files import SUFFIXES, Files
 from fiberweb.folders import tables_in
-from fiberweb.layers import check_call, check_keys, typed
+from fiberweb.layers import check_call, read, typed
 from fiberweb.model.scene import SETUPS
 from fiberweb.provenance import add_call
 from fiberweb.recipes import BEST, Recipes, code, digest_of
@@ -60,7 +60,7 @@ def known(job):
 
 try:
     for path in workflow.configfiles:
-        check_keys(path)  # Snakemake read them, and kept the last of two
+        read(path)  # as `profiles/default` has it done before Snakemake reads those of the call
     CONFIG = load(config, typed(workflow.config_settings.config))
     RESULTS = CONFIG.results
     FILES = Files(CONFIG)

@@ -37,13 +37,17 @@ class AccuracySection(Section):
     buckling: Positive = key(0.8, "buckling number of the force")
     seconds: Positive = key(1.0, "length of the runs whose trajectories are compared", "s")
     duration: Positive = key(50.0, "length of the runs that are scored", "s")
-    window: Annotated[int, Field(ge=10)] = key(2000, "steps in which PyElastica is timed")
+    window: Annotated[int, Field(ge=10, le=1_000_000)] = key(
+        2000, "steps in which PyElastica is timed"
+    )
     plane: Some[Positive] = key(
         [0.3, 0.5, 0.8, 1.5], "buckling numbers of the runs that may leave the plane"
     )
     plane_seconds: Positive = key(0.3, "length of these runs", "s")
-    steps: Annotated[int, Field(ge=100)] = key(4000, "steps of a run that looks for a limit")
-    drift_steps: Annotated[int, Field(ge=1_000_000)] = key(
+    steps: Annotated[int, Field(ge=100, le=1_000_000)] = key(
+        4000, "steps of a run that looks for a limit"
+    )
+    drift_steps: Annotated[int, Field(ge=1_000_000, le=10**10)] = key(
         10_000_000, "steps of the undamped runs that have to keep their energy"
     )
     stability: StabilitySection = StabilitySection()

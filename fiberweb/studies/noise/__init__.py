@@ -19,7 +19,7 @@ class NoiseSection(Section):
     noise: Some[Positive] = key(
         [1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3], "standard deviations of the noise", "m"
     )
-    seeds: Annotated[int, Field(ge=1)] = key(3, "draws of the noise at each level")
+    seeds: Annotated[int, Field(ge=1, le=1000)] = key(3, "draws of the noise at each level")
 
 
 SECTION = NoiseSection
