@@ -16,7 +16,7 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs certificates bench env clean
+.PHONY: help figures published published_all compliant accuracy resume smoke test test_authors docs certificates bench env clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
@@ -39,6 +39,9 @@ compliant: $(STAMP) ## the studies of the paper, with crossings that give
 
 accuracy: $(STAMP) ## error against cost, the model ladder and the limits of the step
 	$(SNAKEMAKE) accuracy --cores $(CORES)
+
+resume: $(STAMP) ## go on with the last call that was killed, stopped or failed
+	$(VENV)/bin/python -m fiberweb.tools.resume $(if $(filter command,$(firstword $(origin CORES))),--cores $(CORES))
 
 smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 	$(SNAKEMAKE) figures --cores $(CORES) --configfile config/smoke.yaml

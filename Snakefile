@@ -78,9 +78,11 @@ onstart:
             sys.executable = forks.interpreter(PYTHON)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
+    workflow.call = calls.begin(sys.argv[1:], RESULTS)
 
 
 onsuccess:
+    workflow.call.unlink(missing_ok=True)
     done = list(workflow.dag.finished_jobs)
     read = {job.wildcards.recording: job.output for job in done if job.rule.name == "recording"}
     for name in sorted(read):
@@ -92,3 +94,7 @@ onsuccess:
 
 onerror:
     timed.write(RESULTS, "snakemake")
+    logs = [path for job in workflow.scheduler.failed for path in job.log]
+    for log in timed.without_end(logs):
+        print(f"{log} has no end: its job was killed, as for want of memory, or the disk is full.")
+    print("No finished run is lost: without the cause above, `make resume` goes on from here.")

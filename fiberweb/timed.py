@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import resource
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock
@@ -48,3 +48,9 @@ def read(log: str) -> dict[str, float]:
     found = TOOK.findall(log)
     pairs = (text.split()[:2] for text in found[-1].split(", ")) if found else ()
     return {name: float(seconds) for name, seconds in pairs}
+
+
+def without_end(logs: Iterable[str]) -> list[str]:
+    """Those logs whose jobs started and had no time to say what they took."""
+    there = [path for path in logs if Path(path).exists()]
+    return [path for path in there if not read(Path(path).read_text("utf-8", errors="replace"))]

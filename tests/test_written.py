@@ -4,7 +4,7 @@ import contextlib
 
 import pytest
 
-from fiberweb.written import cut_short, note
+from fiberweb.written import broken, note
 
 
 @pytest.fixture
@@ -24,30 +24,30 @@ def results(tmp_path):
 
 
 def test_whole_files_are_whole(results):
-    assert cut_short(results) == {}
+    assert broken(results) == {}
 
 
-def test_a_file_cut_short_is_named_with_its_sizes(results):
+def test_a_file_broken_is_named_with_its_sizes(results):
     for name in ("topology.csv", "my table, 2 bytes"):
         path = results / "tables" / name
         path.write_text("a,b\n")
         sentence = f"{path} is broken: it has 4 bytes of the 8 written"
-        assert cut_short(results) == {str(path): sentence}
+        assert broken(results) == {str(path): sentence}
         path.unlink()  # what is not there is missing, and not broken
-        assert cut_short(results) == {}
+        assert broken(results) == {}
 
 
 def test_results_that_were_moved_are_checked_where_they_are(results):
     moved = results.rename(results.with_name("moved"))
     (moved / "tables" / "topology.csv").write_text("")
-    assert list(cut_short(moved)) == [str(moved / "tables" / "topology.csv")]
+    assert list(broken(moved)) == [str(moved / "tables" / "topology.csv")]
 
 
 def test_a_job_at_work_has_no_note_yet(results):
     (results / "logs" / "tables" / "topology.csv.log").write_text("started\n")
     (results / "tables" / "topology.csv").write_text("")
-    assert cut_short(results) == {}
+    assert broken(results) == {}
 
 
 def test_no_results_yet(tmp_path):
-    assert cut_short(tmp_path / "nothing") == {}
+    assert broken(tmp_path / "nothing") == {}

@@ -6,8 +6,8 @@ import signal
 import sys
 import time
 
-from fiberweb import timed
-from fiberweb.written import note
+from fiberweb import calls, timed
+from fiberweb.written import clear, note
 
 
 def to_log(job):
@@ -21,6 +21,8 @@ def to_log(job):
     # then waits for it for ever
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     timed.spent["start"] = time.process_time()
+    calls.join()
+    clear(job.output)
     path = job.log[0]
     with open(path, "w") as log:
         os.dup2(log.fileno(), 1)
