@@ -10,16 +10,18 @@ STAMP := $(VENV)/.installed
 SNAKEMAKE := $(VENV)/bin/snakemake
 VENV_0_3_2 := .venv-0.3.2
 STAMP_0_3_2 := $(VENV_0_3_2)/.installed
+VENV_SLURM := .venv-slurm
+STAMP_SLURM := $(VENV_SLURM)/.installed
 AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 
 # what the workflow starts as `python` is the one in .venv
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy resume smoke test test_authors docs certificates bench env clean
+.PHONY: help figures published published_all compliant accuracy resume smoke test test-faults test-slurm test_authors docs certificates bench env clean
 
 help: ## list these targets
-	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z_-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
 
 # Targets stand before the options: an option that takes a list swallows them.
 figures: $(STAMP) ## every figure of the paper and the claims table
@@ -49,6 +51,12 @@ smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --no-loadscope-reorder
 
+test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: about 15 minutes
+	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/faults
+
+test-slurm: $(STAMP_SLURM) ## the smoke run through a SLURM on this machine: Debian, as root
+	PYTHONPATH=. $(VENV_SLURM)/bin/python -m pytest tests/slurm
+
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
 
@@ -61,7 +69,7 @@ bench: $(STAMP) ## what a run and a job cost on this machine
 env: $(STAMP) ## .venv alone, from envs/requirements.lock
 
 clean: ## remove what was installed and the caches; results stay
-	rm -rf $(VENV) $(VENV_0_3_2) .pytest_cache .hypothesis .ruff_cache
+	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_SLURM) .pytest_cache .hypothesis .ruff_cache
 
 # What is called with a folder and a lock file.
 define install
@@ -80,6 +88,9 @@ $(STAMP): envs/requirements.lock
 	    echo "fiberweb needs Python 3.11 or newer, but $(PYTHON) is: $$($(PYTHON) --version 2>&1)." \
 	        "Name another one, as in: make test PYTHON=python3.12" >&2; exit 1; }
 	$(call install,$(VENV),$<)
+
+$(STAMP_SLURM): envs/slurm.lock
+	$(call install,$(VENV_SLURM),$<)
 
 # The NumPy and Numba that PyElastica 0.3.2 needs end with Python 3.11.
 $(STAMP_0_3_2): envs/pyelastica-0.3.2.lock

@@ -45,12 +45,8 @@ def begin(arguments: Sequence[str], results: str) -> Path:
 
 def unfinished() -> tuple[Path, dict] | None:
     """The note of the last call that did not come to its end, and what it says; None without."""
-    for note in sorted(FOLDER.glob("*.json"), key=lambda path: path.stat().st_mtime, reverse=True):
-        try:
-            return note, json.loads(note.read_text(encoding="utf-8"))
-        except ValueError:  # cut short itself
-            note.unlink()
-    return None
+    notes = _notes()
+    return max(notes, key=lambda each: each[0].stat().st_mtime_ns) if notes else None
 
 
 def join() -> None:
@@ -85,8 +81,7 @@ def at_work(call: dict) -> str | None:
             holders = _holders(FOLDER / "lock")
         except OSError as error:
             return f"who is at work in {here} cannot be told ({error.strerror}): {by_hand}"
-    calls = [json.loads(note.read_text(encoding="utf-8")) for note in FOLDER.glob("*.json")]
-    for call in calls:
+    for _, call in _notes():
         if call["process"] in holders:
             return (
                 f"`{shlex.join(['snakemake', *call['arguments']])}` is at work in {here} (process "
@@ -97,6 +92,16 @@ def at_work(call: dict) -> str | None:
         f"jobs are still at work in {here} ({whose}), though the call that started them was "
         "killed: wait for their end, or kill them, before it is resumed"
     )
+
+
+def _notes() -> list[tuple[Path, dict]]:
+    found = []
+    for note in FOLDER.glob("*.json"):
+        try:
+            found.append((note, json.loads(note.read_text(encoding="utf-8"))))
+        except ValueError:  # cut short, as by a full disk
+            note.unlink()
+    return found
 
 
 def _elsewhere(arguments: Sequence[str]) -> bool:

@@ -70,7 +70,7 @@ class Faulty(Tree):
                         return process
                 except psutil.Error:
                     continue
-            time.sleep(0.002)
+            time.sleep(0.01)
         raise AssertionError(f"no job of {stage} was seen\n{self.printed()}")
 
     def made(self):

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from pathlib import Path
 
 import psutil
 import pytest
@@ -78,5 +79,11 @@ def test_two_calls_at_once(fresh, expected):
     assert fresh.made() == expected
 
 
-def test_where_nothing_was_called_nothing_is_resumed(fresh):
-    assert "there is nothing to resume" in fresh.resume()
+def test_what_was_killed_while_it_wrote_leaves_nothing(fresh, expected):
+    call = fresh.start()
+    job = fresh.job(call, "simulate")
+    (log,) = {Path(file.path) for file in job.open_files() if file.path.endswith(".log")}
+    (fresh.out / "runs" / log.stem / f".response.nc.{job.pid}").write_bytes(b"half")
+    os.killpg(call.pid, signal.SIGKILL)
+    call.wait()
+    resumed(fresh, fresh.printed(), expected)
