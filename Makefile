@@ -89,7 +89,7 @@ $(STAMP): envs/requirements.lock
 	        "Name another one, as in: make test PYTHON=python3.12" >&2; exit 1; }
 	$(call install,$(VENV),$<)
 
-$(STAMP_SLURM): envs/slurm.lock
+$(STAMP_SLURM): envs/slurm.lock envs/requirements.lock
 	$(call install,$(VENV_SLURM),$<)
 
 # The NumPy and Numba that PyElastica 0.3.2 needs end with Python 3.11.

@@ -96,5 +96,5 @@ onerror:
     timed.write(RESULTS, "snakemake")
     logs = [path for job in workflow.scheduler.failed for path in job.log]
     for log in timed.without_end(logs):
-        print(f"{log} has no end: its job was killed, as for want of memory, or the disk is full.")
+        print(f"{log} has no end: its job was killed (out of memory?), or the disk is full.")
     print("No finished run is lost: without the cause above, `make resume` goes on from here.")

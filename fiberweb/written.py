@@ -2,8 +2,8 @@
 
 A disk that fills up, a copy that breaks off or a machine that loses power leaves files that exist
 and are not whole. Not every format tells, a table least of all, so a job's log ends in the size and
-the checksum of each file that it made. Sizes are looked at in every call; content, which takes long,
-in one that resumes another.
+the checksum of each file that it made. Every call looks at the sizes; at the content, which takes
+long, one that resumes another.
 """
 
 from __future__ import annotations

@@ -1,10 +1,8 @@
 """Real signals, disks and permissions: `make test-faults`, or pytest with tests/faults or a file in
 it. Elsewhere nothing here is collected."""
 
-import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
 import time
@@ -16,10 +14,15 @@ from tests.workflow.conftest import Tree
 
 collect_ignore_glob = [] if any("tests/faults" in given for given in sys.argv) else ["test_*.py"]
 
-# Of up to 8 jobs each has a Python of its own; of more they are forks of one process.
-SIZES = {"own": "[2]", "forks": "[2, 3]"}
+# A job has a Python of its own or, where a call has more jobs than this, is a fork of one process.
+WAYS = {"own": "> 8", "forks": "> 0"}
 TARGET = ("out/figures/topology.png", "--configfile", "tiny.yaml", "--cores", "2")
-UNPRIVILEGED = ("setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups")
+TINY = """
+results: out
+scene: {duration: 3.3}
+numerics: {accuracy: draft}
+topology: {crosshatch: [2], polygon: []}
+"""
 
 
 class Faulty(Tree):
@@ -28,10 +31,11 @@ class Faulty(Tree):
     def __init__(self, folder, way):
         super().__init__(folder)
         self.out = self.folder / "out"
-        (self.folder / "tiny.yaml").write_text(
-            "results: out\nscene: {duration: 3.3}\nnumerics: {accuracy: draft}\n"
-            f"topology: {{crosshatch: {SIZES[way]}, polygon: []}}\n"
-        )
+        (self.folder / "tiny.yaml").write_text(TINY)
+        snakefile = self.folder / "Snakefile"
+        text = snakefile.read_text()
+        assert WAYS["own"] in text
+        snakefile.write_text(text.replace(WAYS["own"], WAYS[way]))
 
     def call(self, *command, expected=0, **environment):
         """What a command prints, which must end in the code expected (None: in any but 0)."""
@@ -49,14 +53,17 @@ class Faulty(Tree):
     def resume(self, *more, **given):
         return self.call(sys.executable, "-m", "fiberweb.tools.resume", *more, **given)
 
-    def start(self, *more):
+    def start(self, resume=False):
+        """Start a call, alone in its group of processes, as a shell does."""
+        first = [sys.executable, "-m", "snakemake", *TARGET]
         return subprocess.Popen(
-            [sys.executable, "-m", "snakemake", *TARGET, *more],
+            [sys.executable, "-m", "fiberweb.tools.resume"] if resume else first,
             cwd=self.folder, env=self.environment, text=True, start_new_session=True,
-            stdout=(self.folder / "printed").open("w"), stderr=subprocess.STDOUT,
+            stdout=(self.folder / "printed").open("a"), stderr=subprocess.STDOUT,
         )  # fmt: skip
 
     def printed(self):
+        """What the calls that were started have said."""
         return (self.folder / "printed").read_text()
 
     def job(self, call, stage):
@@ -87,13 +94,16 @@ def finished(printed, rule="simulate"):
     return len(re.findall(rf"^Finished jobid: \d+ \(Rule: {rule}\)", printed, re.MULTILINE))
 
 
-@pytest.fixture(scope="session", params=SIZES)
+@pytest.fixture(scope="session", params=WAYS)
 def undisturbed(request, tmp_path_factory):
     """(how jobs are run, a clone in which nothing went wrong)"""
     tree = Faulty(tmp_path_factory.mktemp("undisturbed"), request.param)
     printed = tree.run()
     assert (tree.out / "logs" / "forks.log").exists() == (request.param == "forks"), printed
     return request.param, tree
+
+
+one_way = pytest.mark.parametrize("undisturbed", ["own"], indirect=True)
 
 
 @pytest.fixture

@@ -4,11 +4,12 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 
 import pytest
 
 from fiberweb.engines import cache
-from tests.faults.conftest import finished
+from tests.faults.conftest import finished, one_way
 
 # as a user who is no root, whom the system has no name for, and whose files these are
 NOBODY = ("unshare", "--user", "--map-user=12345", "--map-group=12345")
@@ -48,6 +49,7 @@ def test_kernels_cut_short(done, expected, kernels):
     assert f"a compiled kernel in {kernels}" in said and "it is compiled anew" in said
 
 
+@one_way
 def test_kernels_of_another_engine_and_none_of_this(done, expected, kernels):
     """Those of the other stay as they are."""
     (ours,) = kernels.iterdir()
@@ -59,6 +61,7 @@ def test_kernels_of_another_engine_and_none_of_this(done, expected, kernels):
 
 
 @nobody
+@one_way
 @pytest.mark.parametrize("place", ["read-only", "no home folder", "home that is not there"])
 def test_no_place_for_kernels(done, expected, kernels, tmp_path, place):
     """The temporary folder has them, which here has them already."""
@@ -100,8 +103,6 @@ print(repr(float(total(np.linspace(0.0, 1.0, 1000)))))
 
 
 def test_sixteen_jobs_compile_into_one_folder_at_once(tmp_path):
-    import time
-
     script = tmp_path / "toy.py"
     script.write_text(TOY)
     root = os.getcwd()
@@ -119,6 +120,7 @@ def test_sixteen_jobs_compile_into_one_folder_at_once(tmp_path):
         assert len(set(said)) == 1 and said[0][1] == "", said
 
 
+@one_way
 def test_sixteen_jobs_load_from_one_folder_at_once(undisturbed, tmp_path):
     """Real ones, of the default engine."""
     warm = "from fiberweb.engines import warmup; warmup('kirchhoff')"

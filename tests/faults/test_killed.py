@@ -10,62 +10,54 @@ import pytest
 from tests.faults.conftest import TARGET, finished
 
 STAGES = ("simulate", "capacity", "figures")
+RULES = ("simulate", "capacity", "figure")
 
 
-def resumed(tree, before, expected):
-    """Resume, and see that nothing is lost and nothing is done twice."""
-    printed = tree.resume()
-    assert f"Going on with: snakemake {' '.join(TARGET)}" in printed
-    runs = sum("response.nc" in name for name in expected)
-    assert finished(printed) == runs - finished(before)
-    assert tree.made() == expected
-    assert "there is nothing to resume" in tree.resume()
-
-
-@pytest.mark.parametrize("stage", STAGES)
-def test_a_job_is_killed(fresh, expected, stage):
-    call = fresh.start()
-    fresh.job(call, stage).kill()
+def kill_job(tree, call, job):
+    job.kill()
     assert call.wait() != 0
-    printed = fresh.printed()
-    assert "has no end: its job was killed" in printed and "`make resume`" in printed
-    resumed(fresh, printed, expected)
+    assert "has no end: its job was killed" in tree.printed()
 
 
-@pytest.mark.parametrize("stage", STAGES)
-def test_snakemake_is_killed_and_its_jobs_go_on(fresh, expected, stage):
-    call = fresh.start()
-    job = fresh.job(call, stage)
-    call.kill()
+def kill_snakemake(tree, call, job):
+    """Its jobs go on: nobody may be at work when it is unlocked."""
+    family = [psutil.Process(call.pid), *psutil.Process(call.pid).children()]
+    (snakemake,) = [each for each in family if "snakemake" in each.cmdline()]
+    snakemake.kill()
     call.wait()
-    locks = fresh.folder / ".snakemake" / "locks"
-    refused = fresh.resume(expected=1)
+    refused = tree.resume(expected=1)
     assert "jobs are still at work" in refused and str(job.pid) in refused
-    assert locks.is_dir()
+    assert (tree.folder / ".snakemake" / "locks").is_dir()
     job.resume()
-    psutil.wait_procs([job], timeout=60)
-    resumed(fresh, fresh.printed(), expected)
+    _, alive = psutil.wait_procs([job], timeout=120)
+    assert not alive
 
 
-@pytest.mark.parametrize("stage", STAGES)
-def test_all_are_killed(fresh, expected, stage):
-    call = fresh.start()
-    fresh.job(call, stage)
+def kill_all(tree, call, job):
     os.killpg(call.pid, signal.SIGKILL)
     call.wait()
-    assert "Directory cannot be locked" in fresh.run(expected=1)
-    resumed(fresh, fresh.printed(), expected)
+    _, alive = psutil.wait_procs([job], timeout=60)
+    assert not alive
 
 
-@pytest.mark.parametrize("stage", STAGES)
-def test_ctrl_c(fresh, expected, stage):
-    call = fresh.start()
-    job = fresh.job(call, stage)
+def interrupt(tree, call, job):
     os.killpg(call.pid, signal.SIGINT)
     job.resume()
-    assert call.wait(timeout=60) != 0
-    assert "Traceback" not in fresh.printed()
-    resumed(fresh, fresh.printed(), expected)
+    assert call.wait(timeout=120) != 0
+    assert "Traceback" not in tree.printed()
+
+
+@pytest.mark.parametrize("end", [kill_job, kill_snakemake, kill_all, interrupt])
+def test_what_is_killed_in_every_stage_goes_on(fresh, expected, end):
+    """Each stage in turn, the first call and then those that resume it."""
+    for stage in STAGES:
+        call = fresh.start(resume=stage != STAGES[0])
+        end(fresh, call, fresh.job(call, stage))
+    printed = fresh.resume()
+    assert f"Going on with: snakemake {' '.join(TARGET)}" in printed
+    assert [finished(fresh.printed() + printed, rule) for rule in RULES] == [1, 1, 1]
+    assert fresh.made() == expected
+    assert "there is nothing to resume" in fresh.resume()
 
 
 def test_two_calls_at_once(fresh, expected):
@@ -86,4 +78,6 @@ def test_what_was_killed_while_it_wrote_leaves_nothing(fresh, expected):
     (fresh.out / "runs" / log.stem / f".response.nc.{job.pid}").write_bytes(b"half")
     os.killpg(call.pid, signal.SIGKILL)
     call.wait()
-    resumed(fresh, fresh.printed(), expected)
+    assert "Directory cannot be locked" in fresh.run(expected=1)
+    fresh.resume()
+    assert fresh.made() == expected
