@@ -64,6 +64,23 @@ def test_a_full_disk_with_the_clone_on_it(fresh, expected, tmp_path):
 
 @mounts
 @one_way
+def test_a_disk_that_is_full_already(fresh, expected):
+    fresh.out.mkdir()
+    printed = fresh.call(
+        *APART,
+        "mount -t tmpfs -o size=64k none out && head -c 40000 /dev/zero > out/filler\n"
+        f"{SNAKEMAKE} && exit 9\n"
+        "exit 0",
+    )
+    sentence = "results = 'out' cannot be written (No space left on device): name a folder that can"
+    assert printed.splitlines()[-1] == sentence
+    assert "Traceback" not in printed
+    fresh.run()
+    assert fresh.made() == expected
+
+
+@mounts
+@one_way
 def test_results_that_cannot_be_written(fresh, expected):
     fresh.out.mkdir()
     printed = fresh.call(
