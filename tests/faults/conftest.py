@@ -68,16 +68,17 @@ class Faulty(Tree):
 
     def job(self, call, stage):
         """The first process of a call that is at work on a job of a stage, and is stopped there."""
-        logs = str(self.out / "logs" / stage)
+        began, logs = time.time_ns(), self.out / "logs" / stage
         while call.poll() is None:
-            for process in psutil.Process(call.pid).children(recursive=True):
+            started = {str(log) for log in logs.glob("*") if log.stat().st_mtime_ns > began}
+            for process in psutil.Process(call.pid).children(recursive=True) if started else []:
                 try:
-                    if any(file.path.startswith(logs) for file in process.open_files()):
+                    if not started.isdisjoint(file.path for file in process.open_files()):
                         process.suspend()
                         return process
                 except psutil.Error:
                     continue
-            time.sleep(0.01)
+            time.sleep(0.005)
         raise AssertionError(f"no job of {stage} was seen\n{self.printed()}")
 
     def made(self):
