@@ -78,7 +78,7 @@ onstart:
             sys.executable = forks.interpreter(PYTHON)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
-    workflow.call = calls.begin(sys.argv[1:], RESULTS)
+    workflow.call = calls.begin(sys.argv[1:])
 
 
 onsuccess:

@@ -21,20 +21,15 @@ SNAKEMAKES = Path(".snakemake", "locks")
 _held = []  # locks, until this process ends
 
 
-def begin(arguments: Sequence[str], results: str) -> Path:
-    """Note a call of Snakemake that starts; the note, to be removed when all of it is done.
-
-    Args:
-        arguments: of the command line.
-        results: folder of the results.
-    """
+def begin(arguments: Sequence[str]) -> Path:
+    """Note a call of Snakemake, by its arguments, that starts; the note, to be removed when all of
+    it is done."""
     join()
     name = hashlib.sha256(repr([*arguments]).encode()).hexdigest()[:16]
     call = {
         "arguments": [*arguments],
-        "results": results,
         # `--directory` leads elsewhere, and the files that the call names are seen from here
-        "from": os.environ.get("PWD", "") if _elsewhere(arguments) else os.getcwd(),
+        "from": os.environ.get("PWD", os.getcwd()) if _elsewhere(arguments) else os.getcwd(),
         "process": os.getpid(),
         "host": platform.node(),
     }
@@ -81,11 +76,11 @@ def at_work(call: dict) -> str | None:
             holders = _holders(FOLDER / "lock")
         except OSError as error:
             return f"who is at work in {here} cannot be told ({error.strerror}): {by_hand}"
-    for _, call in _notes():
-        if call["process"] in holders:
+    for _, other in _notes():
+        if other["process"] in holders:
             return (
-                f"`{shlex.join(['snakemake', *call['arguments']])}` is at work in {here} (process "
-                f"{call['process']}): wait for its end, or stop it by Ctrl-C, before it is resumed"
+                f"`{shlex.join(['snakemake', *other['arguments']])}` is at work in {here} (process "
+                f"{other['process']}): wait for its end, or stop it by Ctrl-C, before it is resumed"
             )
     whose = f"processes {', '.join(map(str, holders))}" if holders else "of another user or machine"
     return (

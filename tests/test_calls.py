@@ -1,5 +1,6 @@
 """Which call is gone on with, and when it is not."""
 
+import os
 import subprocess
 import sys
 
@@ -22,7 +23,7 @@ def folder(tmp_path, monkeypatch):
 
 def begun(*arguments):
     """The note of a call that has ended since."""
-    note = calls.begin(arguments, "results")
+    note = calls.begin(arguments)
     calls._held.clear()
     return note
 
@@ -45,6 +46,7 @@ def test_where_nothing_was_called_nothing_is_resumed(folder, capsys):
 
 def test_the_last_call_that_did_not_end_well(folder):
     first, second = begun("figures"), begun("topology", "--cores", "2")
+    os.utime(first, (0, 0))
     assert calls.unfinished()[1]["arguments"] == ["topology", "--cores", "2"]
     second.unlink()  # as after it ended well
     assert calls.unfinished()[1]["arguments"] == ["figures"]
@@ -55,7 +57,7 @@ def test_the_last_call_that_did_not_end_well(folder):
 
 @pytest.mark.parametrize(
     ("what", "said"),
-    [("begin(['twin'], 'results')", "`snakemake twin` is at work"), ("join()", "jobs are still")],
+    [("begin(['twin'])", "`snakemake twin` is at work"), ("join()", "jobs are still")],
 )
 def test_nobody_is_disturbed(folder, what, said):
     begun("figures")

@@ -31,7 +31,9 @@ def main() -> int:
     print("Going on with:", shlex.join(["snakemake", *command[3:]]), flush=True)
     signal.signal(signal.SIGINT, lambda *_: None)  # Ctrl-C is for Snakemake, which takes its time
     if calls.SNAKEMAKES.is_dir():
-        subprocess.run([*command, "--unlock"], **where, check=True)
+        code = subprocess.run([*command, "--unlock"], **where).returncode
+        if code:
+            return code
     code = subprocess.run(command, **where).returncode
     if code == 0:
         note.unlink(missing_ok=True)
