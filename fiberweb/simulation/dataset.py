@@ -81,7 +81,7 @@ def load(path: str | Path) -> xr.Dataset:
             return data.load()
     except FileNotFoundError:
         raise
-    except (OSError, RuntimeError) as error:
+    except Exception as error:  # whatever a damaged header or a flipped bit ends in
         raise ValueError(
             f"{path} cannot be read ({error}): if it was cut short, delete it and have it made anew"
         ) from error
