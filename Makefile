@@ -10,6 +10,8 @@ STAMP := $(VENV)/.installed
 SNAKEMAKE := $(VENV)/bin/snakemake
 VENV_0_3_2 := .venv-0.3.2
 STAMP_0_3_2 := $(VENV_0_3_2)/.installed
+VENV_SLURM := .venv-slurm
+STAMP_SLURM := $(VENV_SLURM)/.installed
 AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 
 # what the workflow starts as `python` is the one in .venv
@@ -40,6 +42,9 @@ compliant: $(STAMP) ## the studies of the paper, with crossings that give
 accuracy: $(STAMP) ## error against cost, the model ladder and the limits of the step
 	$(SNAKEMAKE) accuracy --cores $(CORES)
 
+resume: $(STAMP) ## go on with the last call that was killed, stopped or failed
+	$(VENV)/bin/python -m fiberweb.tools.resume $(if $(filter command,$(firstword $(origin CORES))),--cores $(CORES))
+
 smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 	$(SNAKEMAKE) figures --cores $(CORES) --configfile config/smoke.yaml
 
@@ -54,6 +59,12 @@ fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them
 
 random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 20 minutes of CPU time
 	$(VENV)/bin/python -m fiberweb.tools.random_scenes
+
+test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: about 15 minutes
+	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/faults
+
+test-slurm: $(STAMP_SLURM) ## the smoke run through a SLURM on this machine: Debian, as root
+	PYTHONPATH=. $(VENV_SLURM)/bin/python -m pytest tests/slurm
 
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
@@ -70,7 +81,7 @@ status: $(STAMP) ## how far the workflow is, from another terminal
 	@$(VENV)/bin/python -m fiberweb.tools.status
 
 clean: ## remove what was installed and the caches; results stay
-	rm -rf $(VENV) $(VENV_0_3_2) .pytest_cache .hypothesis .ruff_cache
+	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_SLURM) .pytest_cache .hypothesis .ruff_cache
 
 # What is called with a folder and a lock file.
 define install
@@ -89,6 +100,9 @@ $(STAMP): envs/requirements.lock
 	    echo "fiberweb needs Python 3.11 or newer, but $(PYTHON) is: $$($(PYTHON) --version 2>&1)." \
 	        "Name another one, as in: make test PYTHON=python3.12" >&2; exit 1; }
 	$(call install,$(VENV),$<)
+
+$(STAMP_SLURM): envs/slurm.lock envs/requirements.lock
+	$(call install,$(VENV_SLURM),$<)
 
 # The NumPy and Numba that PyElastica 0.3.2 needs end with Python 3.11.
 $(STAMP_0_3_2): envs/pyelastica-0.3.2.lock

@@ -81,21 +81,24 @@ onstart:
     logger.addHandler(workflow.progress)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
+    workflow.call = calls.begin(sys.argv[1:])
 
 
 onsuccess:
+    workflow.call.unlink(missing_ok=True)
     done = list(workflow.dag.finished_jobs)
     read = {job.wildcards.recording: job.output for job in done if job.rule.name == "recording"}
     for name in sorted(read):
         for line in findings(name, read[name].sanity):
             print(line)
-    workflow.progress.write("finished")
+    workflow.progress.write(progress.FINISHED)
     timed.write(RESULTS, "snakemake")
     print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")
 
 
 onerror:
-    workflow.progress.write("failed")
+    workflow.progress.write(progress.FAILED)
     timed.write(RESULTS, "snakemake")
+    print("No finished run is lost: without the cause below, `make resume` goes on from here.")
     # after what Snakemake itself still says
     atexit.register(failed.tell, workflow.scheduler.failed, RUNS)

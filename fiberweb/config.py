@@ -37,6 +37,7 @@ from fiberweb.sections import (
 )
 from fiberweb.studies.base import CHOICES, ForceMap, Lab
 
+ROOM = 65536  # bytes without which a disk is full: the notes and logs of a call
 Folder = Annotated[str, BeforeValidator(lambda value, info: folder(value, info.field_name))]
 
 
@@ -141,8 +142,8 @@ def check_folders(config: Config) -> None:
                 f"results = {config.results!r} is on a disk that is not mounted: mount {disk}, or "
                 "name a folder elsewhere"
             )
-        with TemporaryFile(dir=there):
-            pass
+        with TemporaryFile(dir=there) as file:
+            file.write(bytes(ROOM))
     except OSError as error:
         raise ValueError(
             f"results = {config.results!r} cannot be written ({error.strerror}): name a folder "

@@ -21,7 +21,7 @@ REMEDIES = {
     "cannot be read": f"delete that file, {AGAIN}",
 }
 REPORT = "this should not happen: please report it with the log, as CONTRIBUTING.md says"
-KILLED = "it was killed"
+KILLED = "its log has no end: it was killed (out of memory?), or the disk is full"
 NOTES = re.compile(r"^(wrote|took) ")
 SHOWN = 5
 
@@ -39,7 +39,7 @@ def line(rule: str, wildcards: Mapping[str, str], log: str | Path, key: str | No
     helps = (remedy for words, remedy in REMEDIES.items() if words in reason)
     remedy = next(helps, REPORT)
     if reason == KILLED:
-        remedy = "if memory ran out take fewer --cores; " + AGAIN.removeprefix("then ")
+        remedy = f"take fewer --cores, or free some space, {AGAIN}"
     return f"{what} failed: {reason}. Log: {log}. What to do: {remedy}."
 
 

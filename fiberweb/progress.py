@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 FILE = "progress.json"
+FINISHED, FAILED = "finished", "failed"  # how a call ended
 BETWEEN = 30.0  # s from one line on the screen to the next
 WRITTEN = 5.0  # s from one writing of the file to the next
 RUN = "simulate"  # the rule that makes a run
@@ -119,7 +120,7 @@ class Progress(logging.Handler):
         return ", ".join(filter(None, (counted, f"now {self.at}" * bool(self.at), end)))
 
     def write(self, ended: str = "") -> None:
-        """Leave it in the file; ended: how the call did, once it has."""
+        """Leave it in the file; ended: `FINISHED` or `FAILED`, once the call has."""
         state = {
             "line": self.line(), "pid": os.getpid(), "command": self.command, "ended": ended,
             "begun": self.begun, "at": time.time(),

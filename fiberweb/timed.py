@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Lock
 from time import process_time, thread_time
 
-TOOK = re.compile(r"^took (.+), at most \d+ MB$", re.MULTILINE)
+TOOK = re.compile(r"^took (.+), at most (\d+) MB$", re.MULTILINE)
 RSS_UNIT = 1 if sys.platform == "darwin" else 1024  # bytes
 spent: dict[str, float] = {}  # of this process, s
 _lock = Lock()
@@ -46,5 +46,11 @@ def write(results: str | Path, name: str) -> None:
 def read(log: str) -> dict[str, float]:
     """The last such line of a log as seconds by part; empty without one."""
     found = TOOK.findall(log)
-    pairs = (text.split()[:2] for text in found[-1].split(", ")) if found else ()
+    pairs = (text.split()[:2] for text in found[-1][0].split(", ")) if found else ()
     return {name: float(seconds) for name, seconds in pairs}
+
+
+def memory(log: str) -> float:
+    """The largest memory in the last such line of a log, MB; NaN without one."""
+    found = TOOK.findall(log)
+    return float(found[-1][1]) if found else float("nan")

@@ -1,22 +1,33 @@
 """What jobs note of the files that they wrote, and which of those were cut short since.
 
 A disk that fills up, a copy that breaks off or a machine that loses power leaves files that exist
-and are not whole. Not every format tells, a table least of all, so a job's log ends in the size of
-each file that it made.
+and are not whole. Not every format tells, a table least of all, so a job's log ends in the size and
+the checksum of each file that it made. Every call looks at the sizes; at the content, which takes
+long, one that resumes another.
 """
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Iterable
+from glob import escape
 from pathlib import Path
 
-NOTE = re.compile(r"^wrote (.+), (\d+) bytes$", re.MULTILINE)
+NOTE = re.compile(r"^wrote (.+), (\d+) bytes(?:, sha256 (\w+))?$", re.MULTILINE)
+READ_ALL = "FIBERWEB_READ_ALL"  # variable with which content is looked at as well
 LOGS = "logs"  # folder of the logs among the results
 
 
+def clear(paths: Iterable[str | Path]) -> None:
+    """Delete what a job that was killed left of these files under their temporary names."""
+    for path in map(Path, paths):
+        for left in path.parent.glob(f".{escape(path.name)}.*"):
+            left.unlink(missing_ok=True)
+
+
 def note(log: str | Path, paths: Iterable[str | Path]) -> None:
-    """Print the size of those files that exist; they are named as seen from the results.
+    """Print size and checksum of those files that exist; they are named as seen from the results.
 
     Args:
         log: of the job, somewhere in <results>/logs.
@@ -25,18 +36,29 @@ def note(log: str | Path, paths: Iterable[str | Path]) -> None:
     results = next(folder.parent for folder in Path(log).parents if folder.name == LOGS)
     for path in map(Path, paths):
         if path.exists():
-            print(f"wrote {path.relative_to(results).as_posix()}, {path.stat().st_size} bytes")
+            name, size = path.relative_to(results).as_posix(), path.stat().st_size
+            print(f"wrote {name}, {size} bytes, sha256 {_checksum(path)}")
 
 
-def cut_short(results: str | Path) -> dict[str, str]:
-    """Files of another size than their jobs left them with, and a sentence on each.
+def broken(results: str | Path, read_all: bool = False) -> dict[str, str]:
+    """Files of another size than their jobs left them with, or with `read_all` of other content,
+    and a sentence on each.
 
     A file without a note, such as that of a job at work, is taken for whole.
     """
     found = {}
     for log in sorted(Path(results, LOGS).rglob("*.log")):
-        for name, size in NOTE.findall(log.read_text(encoding="utf-8", errors="replace")):
+        for name, size, checksum in NOTE.findall(log.read_text("utf-8", errors="replace")):
             path = Path(results, name)
-            if path.exists() and (left := path.stat().st_size) != int(size):
+            if not path.exists():
+                continue
+            if (left := path.stat().st_size) != int(size):
                 found[str(path)] = f"{path} is broken: it has {left} bytes of the {size} written"
+            elif read_all and checksum and _checksum(path) != checksum:
+                found[str(path)] = f"{path} is broken: its content is not what was written"
     return found
+
+
+def _checksum(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -16,7 +16,7 @@ TRACE = "capacity: scores\nTraceback (most recent call last):\n  File ...\n"
          "No space left on device: 'x'.", "free some space"),
         (f"{TRACE}numpy.MemoryError: 9 GB\n{TOOK}", "numpy.MemoryError: 9 GB.", "fewer --cores"),
         (f"{TRACE}KeyError: 'x'\n{TOOK}", "KeyError: 'x'.", "please report it"),
-        ("capacity: scores\nrun: web\n", "it was killed.", "if memory ran out take fewer --cores"),
+        ("capacity: scores\nrun: web\n", "its log has no end: it was killed", "take fewer --cores"),
         (None, "it left no log.", "please report it"),
     ],
 )  # fmt: skip

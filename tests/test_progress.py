@@ -83,14 +83,14 @@ def test_another_terminal_is_told(tmp_path, monkeypatch):
     followed.handle(event("job_started", jobs=[1]))
     followed.handle(event("job_finished", job_id=1))
     assert status(tmp_path).startswith("1 of 2 runs and 1 of 4 jobs done, now ridge, described")
-    followed.write("failed")
+    followed.write(progress.FAILED)
     assert re.match(r"failed at \d\d:\d\d: 1 of 2 runs.*\nsnakemake", status(tmp_path))
     followed.write()
     path = tmp_path / progress.FILE
     state = json.loads(path.read_text())
     # killed, and its number given to another process since
     path.write_text(json.dumps(state | {"pid": os.getpid(), "begun": 0.0}))
-    assert status(tmp_path).startswith("nothing is running; the last call was killed after")
+    assert status(tmp_path).startswith("nothing is running: killed after")
 
 
 @pytest.mark.parametrize(

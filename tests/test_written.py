@@ -4,7 +4,7 @@ import contextlib
 
 import pytest
 
-from fiberweb.written import cut_short, note
+from fiberweb.written import broken, clear, note
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def results(tmp_path):
 
 
 def test_whole_files_are_whole(results):
-    assert cut_short(results) == {}
+    assert broken(results) == {}
 
 
 def test_a_file_cut_short_is_named_with_its_sizes(results):
@@ -32,22 +32,44 @@ def test_a_file_cut_short_is_named_with_its_sizes(results):
         path = results / "tables" / name
         path.write_text("a,b\n")
         sentence = f"{path} is broken: it has 4 bytes of the 8 written"
-        assert cut_short(results) == {str(path): sentence}
+        assert broken(results) == {str(path): sentence}
         path.unlink()  # what is not there is missing, and not broken
-        assert cut_short(results) == {}
+        assert broken(results) == {}
+
+
+def test_other_content_of_the_same_size_is_found_where_all_is_read(results):
+    path = results / "tables" / "topology.csv"
+    path.write_text("a,b\n1,3\n")
+    assert broken(results) == {}
+    sentence = f"{path} is broken: its content is not what was written"
+    assert broken(results, read_all=True) == {str(path): sentence}
+
+
+def test_a_note_of_an_older_version_has_a_size_alone(results):
+    log = results / "logs" / "tables" / "topology.csv.log"
+    log.write_text("wrote tables/topology.csv, 9 bytes\n")
+    assert list(broken(results, read_all=True)) == [str(results / "tables" / "topology.csv")]
+
+
+def test_what_was_killed_while_it_wrote_is_cleared_and_nothing_else(results):
+    table = results / "tables" / "topology.csv"
+    left, other = (table.with_name(name) for name in (".topology.csv.123", ".topology.csvs.1"))
+    left.touch(), other.touch()
+    clear([table])
+    assert table.exists() and other.exists() and not left.exists()
 
 
 def test_results_that_were_moved_are_checked_where_they_are(results):
     moved = results.rename(results.with_name("moved"))
     (moved / "tables" / "topology.csv").write_text("")
-    assert list(cut_short(moved)) == [str(moved / "tables" / "topology.csv")]
+    assert list(broken(moved)) == [str(moved / "tables" / "topology.csv")]
 
 
 def test_a_job_at_work_has_no_note_yet(results):
     (results / "logs" / "tables" / "topology.csv.log").write_text("started\n")
     (results / "tables" / "topology.csv").write_text("")
-    assert cut_short(results) == {}
+    assert broken(results) == {}
 
 
 def test_no_results_yet(tmp_path):
-    assert cut_short(tmp_path / "nothing") == {}
+    assert broken(tmp_path / "nothing") == {}

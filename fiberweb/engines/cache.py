@@ -23,13 +23,14 @@ from fiberweb.source import ROOT, source_hash
 def folder() -> Path:
     """The folder of this state of the sources; it exists and can be written."""
     named = os.environ.get("FIBERWEB_CACHE") or os.environ.get("NUMBA_CACHE_DIR")
-    wanted = Path(named or Path.home() / ".cache" / "fiberweb").absolute() / source_hash()
+    wanted = Path(named or "~/.cache/fiberweb", source_hash())
     try:
-        return _writable(wanted)
-    except OSError as error:
+        return _writable(wanted.expanduser().absolute())
+    except (OSError, RuntimeError) as error:  # the latter where there is no home folder
+        reason = getattr(error, "strerror", error)
         instead = _temporary() / source_hash()
         warnings.warn(
-            f"compiled kernels cannot be kept in {wanted} ({error.strerror}): {instead} has them "
+            f"compiled kernels cannot be kept in {wanted} ({reason}): {instead} has them "
             "until it is cleared; set FIBERWEB_CACHE to a folder that can be written",
             stacklevel=2,
         )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from pathlib import Path
+from shutil import disk_usage
+from tempfile import TemporaryFile
 
 import numpy as np
 import xarray as xr
@@ -28,6 +31,9 @@ def save(data: xr.Dataset, path: str | Path) -> None:
 
     Motions are stored as `rounded` leaves them, except those of a perturbed pair, which differ by
     less than that: of a scene with a disturbance every digit is kept.
+
+    Raises:
+        OSError: it cannot be written, one sentence.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -43,8 +49,25 @@ def save(data: xr.Dataset, path: str | Path) -> None:
         with timed.part("write"):
             data.to_netcdf(partial, engine="netcdf4", encoding=encoding)
         partial.replace(path)
+    except (OSError, RuntimeError) as error:
+        reason = _refusal(path, data.nbytes) or error
+        raise OSError(f"{path} cannot be written ({reason})") from error
     finally:
         partial.unlink(missing_ok=True)
+
+
+def _refusal(path: Path, size: int) -> str | None:
+    """What the system says of so many bytes beside a path: of a full disk NetCDF says "HDF error",
+    or that permission was denied."""
+    try:
+        if disk_usage(path.parent).free < size:
+            return os.strerror(errno.ENOSPC)
+        with TemporaryFile(dir=path.parent) as file:
+            file.write(bytes(CHUNK))
+            os.fsync(file)
+    except OSError as error:
+        return error.strerror
+    return None
 
 
 def load(path: str | Path) -> xr.Dataset:
@@ -64,7 +87,7 @@ def load(path: str | Path) -> xr.Dataset:
             return data.load()
     except FileNotFoundError:
         raise
-    except (OSError, RuntimeError) as error:
+    except Exception as error:  # whatever a damaged header or a flipped bit ends in
         raise ValueError(
             f"{path} cannot be read ({error}): if it was cut short, delete it and have it made anew"
         ) from error

@@ -3,7 +3,8 @@
 From the last lines of the jobs' logs: one job a log, as it last ran. Stages are folders there:
 simulate, capacity, tables, figures, claims, accuracy; `forks` is the process that jobs are forks
 of, and `snakemake` the workflow's own. Of a job, `kernel` is the integration, `solve` the ridge
-regression with its standard errors, and `rest` all that is none of the others.
+regression with its standard errors, and `rest` all that is none of the others. `longest` is the CPU
+time of a stage's longest job and `MB` the memory of its largest, as a cluster's queue asks for.
 """
 
 from __future__ import annotations
@@ -17,10 +18,12 @@ from fiberweb import timed
 
 PHYSICS = ["kernel", "solve"]
 PARTS = ["start", *PHYSICS, "read", "write", "rest"]
+LARGEST = ["longest", "MB"]
 
 
 def stages(results: str | Path) -> pd.DataFrame:
-    """Jobs and CPU seconds of each stage by part, the longest first; the last row has all.
+    """Jobs and CPU seconds of each stage by part, the longest first, with its longest job, s, and
+    its largest, MB; the last row has all.
 
     Raises:
         ValueError: there is no job's log in the folder.
@@ -28,15 +31,18 @@ def stages(results: str | Path) -> pd.DataFrame:
     folder = Path(results) / "logs"
     rows = []
     for path in sorted(folder.rglob("*.log")):
-        if spent := timed.read(path.read_text(encoding="utf-8", errors="replace")):
+        log = path.read_text(encoding="utf-8", errors="replace")
+        if spent := timed.read(log):
             stage = path.relative_to(folder).parts[0].removesuffix(".log")
-            rows.append({"stage": stage, "jobs": 1, **spent})
+            largest = {"longest": sum(spent.values()), "MB": timed.memory(log)}
+            rows.append({"stage": stage, "jobs": 1, **spent, **largest})
     if not rows:
         raise ValueError(f"{folder} holds no log of a job: run the workflow first")
-    table = pd.DataFrame(rows, columns=["stage", "jobs", *PARTS]).groupby("stage").sum()
+    every = pd.DataFrame(rows, columns=["stage", "jobs", *PARTS, *LARGEST]).groupby("stage")
+    table, largest = every[["jobs", *PARTS]].sum(), every[LARGEST].max()
     table["all"] = table[PARTS].sum(axis=1)
-    table = table.sort_values("all", ascending=False)
-    table.loc["all"] = table.sum()
+    table = table.join(largest).sort_values("all", ascending=False)
+    table.loc["all"] = pd.concat([table.drop(columns=LARGEST).sum(), largest.max()])
     return table.astype({"jobs": int})
 
 

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import psutil
 
-from fiberweb.progress import FILE, clock
+from fiberweb.progress import FAILED, FILE, clock
+
+AGAIN = "`make resume` goes on from here."
 
 
 def status(results: str | Path) -> str:
@@ -26,11 +28,10 @@ def status(results: str | Path) -> str:
         return f"{state['line']} (as of {clock(state['at'])})"
     command = " ".join(["snakemake", *state["command"][1:]])
     if state["ended"]:
-        return f"{state['ended']} at {clock(state['at'])}: {state['line']}\n{command}"
-    return (
-        f"nothing is running; the last call was killed after {clock(state['at'])}: "
-        f"{state['line'].split(', now ')[0]}. To go on: snakemake --unlock, then\n{command}"
-    )
+        more = f"\n{AGAIN}" if state["ended"] == FAILED else ""
+        return f"{state['ended']} at {clock(state['at'])}: {state['line']}\n{command}{more}"
+    done = state["line"].split(", now ")[0]
+    return f"nothing is running: killed after {clock(state['at'])}: {done}\n{command}\n{AGAIN}"
 
 
 def _alive(state: dict) -> bool:

@@ -25,6 +25,8 @@ def test_each_folder_is_a_stage_and_the_last_row_has_all(tmp_path):
     assert list(table.index) == ["simulate", "snakemake", "all"]
     assert table.loc["simulate", ["jobs", "start", "kernel", "rest"]].tolist() == [2, 0.5, 5.0, 0.5]
     assert table.loc["all", ["jobs", "all"]].tolist() == [3, 11.0]
+    assert table["longest"].tolist() == [4.75, 5.0, 5.0]
+    assert set(table["MB"]) == {80.0}
 
 
 def test_the_share_that_is_not_physics_is_printed(tmp_path, monkeypatch, capsys):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from fiberweb import failed, forks, progress, studies, timed
+from fiberweb import calls, failed, forks, progress, studies, timed
 from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
 from fiberweb.files import SUFFIXES, Files
@@ -17,21 +17,23 @@ from fiberweb.provenance import add_call
 from fiberweb.recipes import BEST, Recipes, code, digest_of
 from fiberweb.recorded import findings, recorded
 from fiberweb.runs import check, run_table, runs
-from fiberweb.written import cut_short
+from fiberweb.written import READ_ALL, broken
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # a notebook sets its own, without which matplotlib cannot even be imported elsewhere
 os.environ.update(MPLBACKEND="agg")
+# not every disk has file locks, and files that appear whole under their names need none
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}  # of a figure
 
 
 def make_whole(wildcards):
-    """Have files that were cut short made again, as `--forcerun` would those that are asked for.
+    """Have files that are broken made again, as `--forcerun` would those that are asked for.
 
     Input function of the one job that every file hangs on; it gives no files.
     """
-    workflow.dag.forcefiles.update(CUT_SHORT)
+    workflow.dag.forcefiles.update(BROKEN)
     return []
 
 
@@ -67,17 +69,17 @@ try:
     RUNS = run_table(CONFIG)
     RECIPES = Recipes(CONFIG, RUNS)
     RECORDED = recorded(CONFIG.recordings)
-    CUT_SHORT = {}
+    BROKEN = {}
     if workflow.is_main_process:  # a job on a cluster need not check again
         check_call(sys.argv)
         check_folders(CONFIG)
-        CUT_SHORT = cut_short(RESULTS)
+        BROKEN = broken(RESULTS, READ_ALL in os.environ)
         check(run for run in RUNS.values() if not Path(FILES.of_run(run, "response.nc")).exists())
 except ValueError as error:
     sys.exit(str(error))  # this prints the sentence and nothing else
 
-for broken in CUT_SHORT.values():
-    print(f"{broken}; it is made again with what rests on it.", file=sys.stderr)
+for sentence in BROKEN.values():
+    print(f"{sentence}; it is made again with what rests on it.", file=sys.stderr)
 
 
 pathvars:

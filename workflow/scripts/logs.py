@@ -6,8 +6,8 @@ import signal
 import sys
 import time
 
-from fiberweb import timed
-from fiberweb.written import note
+from fiberweb import calls, timed
+from fiberweb.written import clear, note
 
 
 def to_log(job, does, takes):
@@ -19,6 +19,8 @@ def to_log(job, does, takes):
     # then waits for it for ever
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     timed.spent["start"] = time.process_time()
+    calls.join()
+    clear(job.output)
     path = job.log[0]
     with open(path, "a+") as log:
         log.seek(0)

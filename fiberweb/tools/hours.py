@@ -1,0 +1,49 @@
+"""`python -m fiberweb.tools.hours`: simulations and core-hours of each target, before any of them
+runs, by the config of the paper.
+
+Of the simulations alone: their kernels are nearly all of what a target takes. Where the forces of a
+study are those that the ridge finds best, as many of those that it may find are counted.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from fiberweb import studies
+from fiberweb.config import Config, lab, load
+from fiberweb.model.scene import SETUPS
+from fiberweb.runs import Run, runs
+from fiberweb.simulation.explain import cost
+from fiberweb.simulation.plan import plan
+
+CONFIG = Path(__file__).parents[2] / "config" / "config.yaml"
+TARGETS = {"described": "figures", "published": "published", "compliant": "compliant"}
+
+
+def wanted(config: Config, study: str, setup: str) -> list[Run]:
+    """The runs of a study in a setup, with one of the forces that the ridge may find best."""
+    forces = lab(config, setup).map.best
+    return runs(config, study, setup, {key: found[-1] for key, found in forces.items() if found})
+
+
+def hours() -> pd.DataFrame:
+    """Simulations, core-hours and the longest simulation, s, of each target."""
+    paper, all_of_it = load(CONFIG), load(CONFIG, {"published_all": True})
+    asked = {TARGETS[setup]: (paper, setup) for setup in SETUPS}
+    asked["published_all"] = (all_of_it, "published")
+    rows, costs = [], {}
+    for target, (config, setup) in asked.items():
+        taking_part = [name for name in studies.STUDIES if setup in studies.setups(name)]
+        found = {run.name: run for name in taking_part for run in wanted(config, name, setup)}
+        for name, run in found.items():
+            if name not in costs:
+                costs[name] = cost(plan(run.scene, **run.numerics))
+        taken = [costs[name] for name in found]
+        rows.append((target, len(taken), sum(taken) / 3600, max(taken)))
+    return pd.DataFrame(rows, columns=["target", "simulations", "core-hours", "longest, s"])
+
+
+if __name__ == "__main__":
+    print(hours().round(2).to_string(index=False))

@@ -1,0 +1,83 @@
+"""A job, Snakemake, or all of them killed; Ctrl-C; two calls at once."""
+
+import os
+import signal
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.faults.conftest import TARGET, finished
+
+STAGES = ("simulate", "capacity", "figures")
+RULES = ("simulate", "capacity", "figure")
+
+
+def kill_job(tree, call, job):
+    job.kill()
+    assert call.wait() != 0
+    assert "its log has no end: it was killed" in tree.printed()
+
+
+def kill_snakemake(tree, call, job):
+    """Its jobs go on: nobody may be at work when it is unlocked."""
+    family = [psutil.Process(call.pid), *psutil.Process(call.pid).children()]
+    (snakemake,) = [each for each in family if "snakemake" in each.cmdline()]
+    snakemake.kill()
+    call.wait()
+    refused = tree.resume(expected=1)
+    assert "jobs are still at work" in refused and str(job.pid) in refused
+    assert (tree.folder / ".snakemake" / "locks").is_dir()
+    job.resume()
+    _, alive = psutil.wait_procs([job], timeout=120)
+    assert not alive
+
+
+def kill_all(tree, call, job):
+    os.killpg(call.pid, signal.SIGKILL)
+    call.wait()
+    _, alive = psutil.wait_procs([job], timeout=60)
+    assert not alive
+
+
+def interrupt(tree, call, job):
+    os.killpg(call.pid, signal.SIGINT)
+    job.resume()
+    assert call.wait(timeout=120) != 0
+    assert "Traceback" not in tree.printed()
+
+
+@pytest.mark.parametrize("end", [kill_job, kill_snakemake, kill_all, interrupt])
+def test_what_is_killed_in_every_stage_goes_on(fresh, expected, end):
+    """Each stage in turn, the first call and then those that resume it."""
+    for stage in STAGES:
+        call = fresh.start(resume=stage != STAGES[0])
+        end(fresh, call, fresh.job(call, stage))
+    printed = fresh.resume()
+    assert f"Going on with: snakemake {' '.join(TARGET)}" in printed
+    assert [finished(fresh.printed() + printed, rule) for rule in RULES] == [1, 1, 1]
+    assert fresh.made() == expected
+    assert "there is nothing to resume" in fresh.resume()
+
+
+def test_two_calls_at_once(fresh, expected):
+    call = fresh.start()
+    job = fresh.job(call, "simulate")
+    assert "Directory cannot be locked" in fresh.run(expected=1)
+    refused = fresh.resume(expected=1)
+    assert f"`snakemake {' '.join(TARGET)}` is at work" in refused and str(call.pid) in refused
+    job.resume()
+    assert call.wait() == 0, fresh.printed()
+    assert fresh.made() == expected
+
+
+def test_what_was_killed_while_it_wrote_leaves_nothing(fresh, expected):
+    call = fresh.start()
+    job = fresh.job(call, "simulate")
+    (log,) = {Path(file.path) for file in job.open_files() if file.path.endswith(".log")}
+    (fresh.out / "runs" / log.stem / f".response.nc.{job.pid}").write_bytes(b"half")
+    os.killpg(call.pid, signal.SIGKILL)
+    call.wait()
+    assert "Directory cannot be locked" in fresh.run(expected=1)
+    fresh.resume()
+    assert fresh.made() == expected
