@@ -127,3 +127,10 @@ def test_what_is_wrong_is_said_in_one_sentence(make, args, kwargs, words):
 def test_a_network_that_no_machine_holds_is_refused_at_once(make, n):
     with pytest.raises(ValueError, match=rf"^n = {n}: more than .* are beyond any machine"):
         make(n, 0.5)
+
+
+@pytest.mark.parametrize("value", [1e-6, 1e6, 1e200])
+def test_a_length_of_no_magnitude_is_refused(value):
+    for make, name in ((crosshatch, "length"), (crosshatch, "spacing"), (polygon, "diameter")):
+        with pytest.raises(ValueError, match=f"{name} = .* between 1e-05 and 100000, in SI"):
+            make(6, **{name: value})
