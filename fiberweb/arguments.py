@@ -16,7 +16,7 @@ from fiberweb.errors import unknown_key
 
 Called = TypeVar("Called", bound=Callable)
 # of a number in SI units that is not 0; of others the powers and products cannot all be held
-LEAST, MOST = 1e-30, 1e30
+LEAST, MOST = 1e-40, 1e40
 OWN = frozenset({float, int, bool, str, type(None)})  # nothing to convert, and the most frequent
 
 

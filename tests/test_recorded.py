@@ -46,3 +46,15 @@ def test_a_list_that_cannot_be_used_is_one_sentence(tmp_path, entries, words):
     with pytest.raises(ValueError) as caught:
         of(*entries)
     assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "name"), [("..", "-"), (".", "-"), ("../../x", "--..-x"), ("/", "-")]
+)
+def test_a_name_leads_to_no_other_folder(tmp_path, given, name):
+    assert [*of({"path": str(tmp_path / "a.csv"), "name": given})] == [name]
+
+
+def test_a_name_is_no_longer_than_that_of_a_folder_can_be(tmp_path):
+    with pytest.raises(ValueError, match="is longer than the name of a folder can be"):
+        of({"path": str(tmp_path / "a.csv"), "name": "é" * 121})

@@ -153,6 +153,7 @@ class Scene:
         self._check()
         if self.force is None and self.stroke is None:
             object.__setattr__(self, "force", self._reference_force())
+            check_magnitude("force", self.force)
 
     def _check(self) -> None:
         """Raise ValueError for values that exclude one another."""

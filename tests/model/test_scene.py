@@ -143,3 +143,11 @@ def test_what_tells_a_scene_from_others_is_what_is_not_the_setups_own():
     other = Scene(network, "published", damping=1.0, seed=5).distinct()
     assert (other["setup"], other["damping"], other["seed"]) == ("published", 1.0, 5)
     assert "filter_order" not in other
+
+
+@pytest.mark.parametrize("name", ["diameter", "youngs_modulus", "drive_rate", "stroke", "damping"])
+@pytest.mark.parametrize("value", [1e-200, 1e200])
+def test_a_number_of_no_magnitude_is_refused(name, value):
+    """Found by random scenes: fourth powers overflowed, and splines of such knots were NaN."""
+    with pytest.raises(ValueError, match=f"{name} = .*magnitude has to be between 1e-40 and 1e"):
+        Scene(HATCH, **{name: value})

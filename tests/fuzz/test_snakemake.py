@@ -1,0 +1,82 @@
+"""What Snakemake itself would choke on, or run, is refused before Snakemake reads it."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fiberweb.untrusted import guard
+from tests.fuzz.hostile import HOSTILE, LAUGHS
+
+ROOT = Path(__file__).parents[2]
+SECONDS, MEGABYTES = 1.0, 500  # of CPU time beyond a call that does nothing, and in all
+OBEYED = b"""__use_yte__: true
+__definitions__: ["import os; os.mkdir('harm')"]
+results: ?os.mkdir('harm')
+"""
+
+
+def called(folder, *options):
+    """What a dry run from another folder that has to fail prints, and its CPU time (s) and memory
+    (MB)."""
+    command = [sys.executable, "-m", "snakemake", "topology", "-n", "--cores", "1"]
+    with (folder / "printed").open("w+") as printed:
+        process = subprocess.Popen(
+            [*command, "--snakefile", ROOT / "Snakefile", *options],
+            cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=printed, stderr=printed,
+        )  # fmt: skip
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        assert process.returncode == 1
+        printed.seek(0)
+        return printed.read(), used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
+@pytest.fixture(scope="module")
+def start(tmp_path_factory):
+    """CPU time that Snakemake takes to start (s)."""
+    text, seconds, _ = called(tmp_path_factory.mktemp("start"), "--configfile", "missing.yaml")
+    assert "missing.yaml is no file" in text
+    return seconds
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [(OBEYED, ["__use_yte__"]), HOSTILE["merge keys"], HOSTILE["100 MB"]],
+    ids=["template", "merge keys", "100 MB"],
+)
+def test_a_file_is_refused_before_it_is_read(tmp_path, start, content, words):
+    (tmp_path / "my.yaml").write_bytes(content)
+    text, seconds, megabytes = called(tmp_path, "--configfile", "my.yaml")
+    sentence = text.splitlines()[-1]
+    assert len(text.splitlines()) == 2 and all(word in sentence for word in words), text
+    assert not (tmp_path / "harm").exists()
+    assert megabytes < MEGABYTES and seconds < start + SECONDS, (megabytes, seconds)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (["--configfile", "bomb.yaml", "--config", "results=x"], "10000 keys and values"),
+        (["-n", "--configfiles", "missing.yaml"], "missing.yaml is no file"),
+        (["--configfile=bomb.yaml", "--", "figures"], "10000 keys and values"),
+        (["-C", f"scene={{{LAUGHS.decode().replace(chr(10), ', ')}}}"], "--config holds more than"),
+        (["--config", "results=x", "scene=" + "[" * 100], "--config has more than 20 groups"),
+        (["--config", "scene={seed: !!int 1}"], "--config has the tag"),
+        (["--config", "a={b: &x {c: 1}, d: *x, b: 2}"], "--config gives a.b twice: keep"),
+    ],
+)
+def test_a_call_in_any_spelling(tmp_path, monkeypatch, call, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bomb.yaml").write_bytes(LAUGHS)
+    with pytest.raises(SystemExit) as caught:
+        guard(["snakemake", "topology", *call])
+    assert words in str(caught.value.code)
+
+
+def test_an_honest_call_passes(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    guard(["snakemake", "topology", "--configfile", "config/smoke.yaml", "config/config.yaml"])
+    guard(["snakemake", "--config", "results=a", "scene={seed: 1}", "published_all=True", "-n"])
