@@ -1,25 +1,32 @@
 # Everything needs Python 3.11 or newer and make; the rest is put into .venv.
 # Overrides: make figures CORES=8, make test PYTHON=python3.12, and for the claims about the authors'
-# own tables (G1 to G3) make published TABLES=folder
+# own tables (G1 to G3) make published TABLES=folder; of the report, what it is of, the config laid
+# over config/config.yaml and where it goes:
+# make report SHOWN="report_described report_published" CONFIG=my.yaml REPORT=results/mine/report
 
 PYTHON ?= python3
 CORES ?= 2
+SHOWN ?= report_described
+REPORT ?= results/report
 
 VENV := .venv
 STAMP := $(VENV)/.installed
 SNAKEMAKE := $(VENV)/bin/snakemake
 VENV_0_3_2 := .venv-0.3.2
 STAMP_0_3_2 := $(VENV_0_3_2)/.installed
+LAID := $(if $(CONFIG),--configfile $(CONFIG))
+VENV_REPORT := .venv-report
+STAMP_REPORT := $(VENV_REPORT)/.installed
 AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 
 # what the workflow starts as `python` is the one in .venv
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy smoke test test_authors docs certificates bench env clean
+.PHONY: help figures published published_all compliant accuracy smoke test test_authors test-report report reproduce crate docs certificates bench env clean
 
 help: ## list these targets
-	@awk -F ':.*## ' '/^[a-z_]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z_-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
 
 # Targets stand before the options: an option that takes a list swallows them.
 figures: $(STAMP) ## every figure of the paper and the claims table
@@ -43,11 +50,27 @@ accuracy: $(STAMP) ## error against cost, the model ladder and the limits of the
 smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 	$(SNAKEMAKE) figures --cores $(CORES) --configfile config/smoke.yaml
 
+report: $(STAMP) ## figures, tables, claims and provenance as report.html and report.zip in results/
+	$(SNAKEMAKE) $(SHOWN) --cores $(CORES) $(LAID)
+	$(SNAKEMAKE) $(SHOWN) $(LAID) --report-stylesheet workflow/report/style.css \
+	    --report $(REPORT).html
+	$(SNAKEMAKE) $(SHOWN) $(LAID) --report-stylesheet workflow/report/style.css \
+	    --report $(REPORT).zip
+
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --no-loadscope-reorder
 
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
+
+test-report: $(STAMP) $(STAMP_REPORT) ## report in Chromium, metadata by their own checkers: 15 minutes
+	PYTHONPATH=. $(VENV_REPORT)/bin/python -m pytest --confcutdir tests/report tests/report
+
+reproduce: $(STAMP) ## one run again from its own file, compared: make reproduce RUN=name-or-file
+	$(VENV)/bin/python -m fiberweb.tools.reproduce $(RUN)
+
+crate: $(STAMP_REPORT) ## results as a Workflow Run RO-Crate, described by ro-crate-metadata.json
+	PYTHONPATH=. $(VENV_REPORT)/bin/python -m fiberweb.tools.crate $(or $(RESULTS),results)
 
 certificates: $(STAMP) ## whom certificates accuse: 236 scenes, over an hour
 	$(VENV)/bin/python -m fiberweb.tools.certificates
@@ -58,7 +81,7 @@ bench: $(STAMP) ## what a run and a job cost on this machine
 env: $(STAMP) ## .venv alone, from envs/requirements.lock
 
 clean: ## remove what was installed and the caches; results stay
-	rm -rf $(VENV) $(VENV_0_3_2) .pytest_cache .hypothesis .ruff_cache
+	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_REPORT) .pytest_cache .hypothesis .ruff_cache
 
 # What is called with a folder and a lock file.
 define install
@@ -77,6 +100,9 @@ $(STAMP): envs/requirements.lock
 	    echo "fiberweb needs Python 3.11 or newer, but $(PYTHON) is: $$($(PYTHON) --version 2>&1)." \
 	        "Name another one, as in: make test PYTHON=python3.12" >&2; exit 1; }
 	$(call install,$(VENV),$<)
+
+$(STAMP_REPORT): envs/report.lock
+	$(call install,$(VENV_REPORT),$<)
 
 # The NumPy and Numba that PyElastica 0.3.2 needs end with Python 3.11.
 $(STAMP_0_3_2): envs/pyelastica-0.3.2.lock

@@ -9,6 +9,7 @@
 #   snakemake --cores 2 compliant    the same with crossings that give (setup `compliant`)
 #   snakemake --cores 2 claims       the paper's claims in every setup, side by side
 #   snakemake --cores 2 recordings   a score card of each recording that the config lists
+#   snakemake --cores 2 report_described      what `make report` then shows
 #   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
 import os
@@ -39,6 +40,7 @@ include: "workflow/rules/buckling.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/recordings.smk"
+include: "workflow/rules/report.smk"
 
 
 rule figures:

@@ -129,6 +129,24 @@ class Recipes:
             [hashlib.sha256(Path(path).read_bytes()).hexdigest() for path in published],
         )
 
+    def animations(self) -> str:
+        """Of the animations of the study `buckling`."""
+        section = self._config.buckling
+        return digest_of(
+            code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
+            (section.seconds, section.frame_rate),
+            self.responses("buckling", "described"),
+        )
+
+    def page(self, file: str) -> str:
+        """Of a page of the report, by the path among the results of what it shows."""
+        _, *setup, name = file.split("/")
+        if name.endswith(".gif"):
+            shown = self.animations()
+        else:
+            shown = self.claims(*setup) if name == "claims.csv" else self.table(name, *setup)
+        return digest_of(code("page", "fiberweb.pages"), shown)
+
     def _choice(self, study: str, setup: str) -> str:
         """Of what chooses a study's runs from the possible ones."""
         if not studies.waits(study, setup):

@@ -64,8 +64,8 @@ def study(
     choices: Sequence[str],
     certificate_paths: Sequence[str | Path] = (),
 ) -> pd.DataFrame:
-    """One row per run and choice of its force: `COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`, and
-    `VERDICTS` if there are certificates.
+    """One row per run and choice of its force: scene, capacities with their standard errors, and
+    numerics (`COLUMNS`, force_choice, `PHYSICS`, `NUMERICS`, and `VERDICTS` of certificates).
 
     Args:
         capacity_paths: as for `rows`; a run that two choices agree on comes twice.
@@ -129,7 +129,8 @@ def baselines(
 
 
 def input_baselines(response_path: str | Path, **options: object) -> pd.DataFrame:
-    """`baselines` of a response in a file, whose input every run of a study has."""
+    """What readouts made of the input alone score, without a network, on the input that every run
+    of the study has (`baselines` of a response in a file)."""
     return baselines(dataset.load(response_path), **options)
 
 

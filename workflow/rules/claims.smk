@@ -8,11 +8,7 @@ rule setup_claims:
         ],
         published=tables_in(CONFIG.published_tables),
     output:
-        report(
-            "<results>/tables/{setup}/claims.csv",
-            caption="../report/claims.rst",
-            category="Claims",
-        ),
+        "<results>/tables/{setup}/claims.csv",
     log:
         "<logs>/claims/{setup}.log",
     localrule: True

@@ -79,4 +79,5 @@ wildcard_constraints:
     table="|".join(FILES.tables),
     figure="|".join(FILES.figures),
     recording="[^/]+",
+    shown=r"(tables|figures)/.+",
     engine="|".join(ENGINES),

@@ -135,7 +135,8 @@ def of_runs(
     alpha: float,
     scoring: str,
 ) -> xr.Dataset:
-    """`estimates` of each response and film along ``case``; errors as there.
+    """Targets of the NARMA tasks and their estimates, over the test part of each run and film
+    (`estimates` along ``case``; errors as there).
 
     Args:
         cameras: of each path, keyword arguments of `fiberweb.scoring.camera.films`; None for a

@@ -11,7 +11,8 @@ from fiberweb.simulation import dataset
 
 
 def example_traces(response_path: str | Path, **scoring) -> xr.Dataset:
-    """`fiberweb.scoring.capacity.traces` of one response; without variables if it is unstable,
-    because such a run estimates nothing."""
+    """Targets and their estimates over the test part of one run, by
+    `fiberweb.scoring.capacity.traces`; without variables if it is unstable, because such a run
+    estimates nothing."""
     response = dataset.load(response_path)
     return traces(response, **scoring) if response.attrs["status"] == "ok" else response[[]]
