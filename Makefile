@@ -23,7 +23,8 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy smoke test test_authors test-report report reproduce crate docs certificates bench env clean
+.PHONY: help figures published published_all compliant accuracy smoke report test test_authors test-report \
+    reproduce crate docs certificates bench status env clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z_-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
@@ -79,6 +80,9 @@ bench: $(STAMP) ## what a run and a job cost on this machine
 	$(VENV)/bin/python -m fiberweb.tools.bench
 
 env: $(STAMP) ## .venv alone, from envs/requirements.lock
+
+status: $(STAMP) ## how far the workflow is, from another terminal
+	@$(VENV)/bin/python -m fiberweb.tools.status
 
 clean: ## remove what was installed and the caches; results stay
 	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_REPORT) .pytest_cache .hypothesis .ruff_cache

@@ -43,20 +43,22 @@ include: "workflow/rules/recordings.smk"
 include: "workflow/rules/report.smk"
 
 
-rule figures:
-    default_target: True
-    input:
-        FILES.products("described"),
+for setup in SETUPS:
 
+    rule:
+        name:
+            {"described": "figures"}.get(setup, setup)
+        default_target: setup == "described"
+        input:
+            FILES.products(setup),
 
-rule published:
-    input:
-        FILES.products("published"),
-
-
-rule compliant:
-    input:
-        FILES.products("compliant"),
+    rule:
+        name:
+            f"report_{setup}"
+        input:
+            FILES.reported(setup),
+            # written by every call that makes something, so it is there once the rest is
+            ancient(report(lambda _: FILES.calls(), category="Provenance")),
 
 
 for study in studies.STUDIES:
@@ -78,6 +80,8 @@ onstart:
         workflow.forks = forks.start(PYTHON, RESULTS)
         if workflow.forks:
             sys.executable = forks.interpreter(PYTHON)
+    workflow.progress = progress.Progress(RESULTS, under_way)
+    logger.addHandler(workflow.progress)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
 
@@ -88,9 +92,11 @@ onsuccess:
     for name in sorted(read):
         for line in findings(name, read[name].sanity):
             print(line)
+    workflow.progress.write("finished")
     timed.write(RESULTS, "snakemake")
     print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")
 
 
 onerror:
+    workflow.progress.write("failed")
     timed.write(RESULTS, "snakemake")

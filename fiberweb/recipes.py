@@ -17,6 +17,7 @@ from pathlib import Path
 from fiberweb import source, studies
 from fiberweb.config import Config
 from fiberweb.folders import tables_in
+from fiberweb.model.scene import SETUPS
 from fiberweb.runs import Run, runs
 from fiberweb.studies.base import Table
 
@@ -34,6 +35,17 @@ def code(script: str, *names: str) -> str:
     """Digest of a script and of the code that modules or functions depend on; a comment or the
     layout of code does not change it."""
     return source.digest(*names, script=SCRIPTS / f"{script}.py")
+
+
+def of_recording() -> str:
+    """Of any recording, whose file and options are looked at beside it."""
+    return code("recording", "fiberweb.recordings.read", "fiberweb.products")
+
+
+def of_card(read: dict) -> str:
+    """Of the score card of a recording that was read with these options."""
+    made_by = code("card", "fiberweb.scoring.card", "fiberweb.figures.card", "fiberweb.products")
+    return digest_of(made_by, of_recording(), read)
 
 
 class Recipes:
@@ -127,6 +139,13 @@ class Recipes:
             code("claims", "fiberweb.claims.judge", "fiberweb.products", *studies.claims()),
             [self.table(file, setup) for file in studies.judged_by(setup)],
             [hashlib.sha256(Path(path).read_bytes()).hexdigest() for path in published],
+        )
+
+    def joined_claims(self) -> str:
+        """Of the claims of all setups side by side."""
+        return digest_of(
+            code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
+            [self.claims(setup) for setup in SETUPS],
         )
 
     def animations(self) -> str:

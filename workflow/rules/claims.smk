@@ -35,10 +35,7 @@ rule claims:
     conda:
         "../../envs/environment.yaml"
     params:
-        recipe=lambda wildcards: digest_of(
-            code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
-            [RECIPES.claims(setup) for setup in SETUPS],
-        ),
+        recipe=lambda wildcards: RECIPES.joined_claims(),
     message:
         "The claims of all setups side by side"
     script:

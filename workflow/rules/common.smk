@@ -6,7 +6,7 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from fiberweb import forks, studies, timed
+from fiberweb import forks, progress, studies, timed
 from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
 from fiberweb.files import SUFFIXES, Files
@@ -14,7 +14,7 @@ from fiberweb.folders import tables_in
 from fiberweb.layers import check_call, check_keys, typed
 from fiberweb.model.scene import SETUPS
 from fiberweb.provenance import add_call
-from fiberweb.recipes import BEST, Recipes, code, digest_of
+from fiberweb.recipes import BEST, Recipes, code, of_card, of_recording
 from fiberweb.recorded import findings, recorded
 from fiberweb.runs import check, run_table, runs
 from fiberweb.written import cut_short
@@ -43,6 +43,19 @@ def study_runs(study, setup):
         best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
         return runs(CONFIG, study, setup, best)
     return RECIPES.possible(study, setup)
+
+
+def under_way():
+    """What is to be known of each job that is to run, by its number."""
+    return {job.jobid: known(job) for job in workflow.dag.needrun_jobs()}
+
+
+def known(job):
+    run = RUNS.get(job.wildcards.get("run"))
+    if run is None:
+        return progress.Job(job.rule.name)
+    weight = run.expected_seconds if job.rule.name == progress.RUN else 1.0
+    return progress.Job(job.rule.name, f"{run.study}, {run.scene.setup}", weight)
 
 
 try:

@@ -23,14 +23,3 @@ rule page:
         "Showing {input}"
     script:
         "../scripts/page.py"
-
-
-for setup in SETUPS:
-
-    rule:
-        name:
-            f"report_{setup}"
-        input:
-            FILES.reported(setup),
-            # written by every call that makes something, so it is there once the rest is
-            ancient(report(lambda _: FILES.calls(), category="Provenance")),
