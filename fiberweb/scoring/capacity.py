@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -216,13 +217,14 @@ def score(
     }
     attrs = {key: response.attrs[key] for key in _KEPT if key in response.attrs}
     attrs |= {"sample_rate": rate, "n_signals": 2 * response.sizes["readout"]}
+    attrs["scoring_versions"] = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     attrs |= asdict(chosen) | {"shuffle": int(chosen.shuffle)}  # NetCDF has no booleans
     return xr.Dataset(variables, coords, attrs)
 
 
 _KEPT = (
     "status", "unstable_at", "setup", "scene", "run", "engine", "elements_per_section", "time_step",
-    "sample_rate",
+    "sample_rate", "engine_source", "versions",
 )  # fmt: skip
 _VARIABLES = {
     "nonlinear": ("order", "capacity for Legendre polynomials"),

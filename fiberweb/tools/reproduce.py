@@ -1,6 +1,6 @@
 """`python -m fiberweb.tools.reproduce RUN [results]`: one run again, from its own file alone.
 
-RUN is a run's name, its folder, or its response.nc. The scene, the engine, the mesh and the step
+RUN is a run's name, its folder, or a file in it. The scene, the engine, the mesh and the step
 stand in that file, and how it was scored in the capacity.nc beside it, if there is one. The run is
 repeated in a temporary folder and compared value by value; nothing among the results is touched.
 Ends with 0 if every value has the same bits, and with 1 if one has not; what could explain that,
@@ -24,6 +24,7 @@ from fiberweb.simulation.plan import plan
 from fiberweb.simulation.simulate import run
 
 MADE_BY = ("engine_source", "versions")
+SCORED_BY = ("scoring_versions",)
 SCORING = ("scoring", "alpha", "horizon", "split", "skip", "shuffle", "overshoot")
 AUTHORS = "authors"  # what a file says of the mesh that the published setup fixes
 
@@ -35,7 +36,9 @@ def response_of(asked: str, results: str | Path = "results") -> Path:
         ValueError: there is none; one sentence.
     """
     given = Path(asked)
-    places = [given, given / "response.nc", Path(results, "runs", asked, "response.nc")]
+    named = Path(results, "runs", asked)
+    places = [given.with_name("response.nc")] if given.is_file() else []
+    places += [given / "response.nc", named / "response.nc"]
     for place in places:
         if place.is_file():
             return place
@@ -45,7 +48,7 @@ def response_of(asked: str, results: str | Path = "results") -> Path:
     )
 
 
-def repeated(kept: xr.Dataset) -> xr.Dataset:
+def repeated(kept: xr.Dataset, path: Path) -> xr.Dataset:
     """The response that the attributes of another one ask for.
 
     Raises:
@@ -54,7 +57,7 @@ def repeated(kept: xr.Dataset) -> xr.Dataset:
     given = kept.attrs
     for key in ("scene", "engine", "time_step", "elements_per_section"):
         if key not in given:
-            raise ValueError(f"the file has no attribute {key!r}: it is no simulated response")
+            raise ValueError(f"{path} has no attribute {key!r}: it is no simulated response")
     elements = given["elements_per_section"]
     numerics = {"elements_per_section": None if elements == AUTHORS else int(elements)}
     numerics |= {"engine": given["engine"], "time_step": float(given["time_step"])}
@@ -91,11 +94,9 @@ def reproduce(path: Path) -> bool:
     """Run and score again what a response.nc and the capacity.nc beside it hold, and print what
     agrees; whether all does."""
     kept = dataset.load(path)
-    response = repeated(kept)
+    response = repeated(kept, path)
     print(f"{path}: {kept.attrs['engine']}, {kept.sizes['time']} frames")
-    for key in MADE_BY:
-        if (was := kept.attrs.get(key)) != (now := response.attrs[key]):
-            print(f"{key} was {was}, and is {now} here: other digits are no surprise")
+    _tell_makers(kept, response, MADE_BY)
     with TemporaryDirectory() as folder:
         # by way of a file, since a file rounds motions
         dataset.save(response, Path(folder, "response.nc"))
@@ -106,10 +107,17 @@ def reproduce(path: Path) -> bool:
         before = dataset.load(scores)
         with threadpool_limits(1):  # as in the workflow: more would add in another order
             after = scored(again, before)
+        _tell_makers(before, after, SCORED_BY)
         for name in ("c_nl", "c_m"):
             print(f"{name}: {float(before[name]):.10g}, again {float(after[name]):.10g}")
         same &= _told(scores.name, apart(before, after))
     return same
+
+
+def _tell_makers(kept: xr.Dataset, again: xr.Dataset, keys: tuple[str, ...]) -> None:
+    for key in keys:
+        if (was := kept.attrs.get(key)) != (now := again.attrs[key]):
+            print(f"{key} was {was}, and is {now} here: other digits are no surprise")
 
 
 def _told(name: str, lines: list[str]) -> bool:
@@ -121,10 +129,13 @@ def _told(name: str, lines: list[str]) -> bool:
 
 def main() -> None:
     """What is asked for on the command line."""
+    asked = sys.argv[1:3]
+    if not asked:
+        sys.exit("RUN is missing: give a run's name, as in make reproduce RUN=name, or a path")
     try:
-        same = reproduce(response_of(*sys.argv[1:3]))
-    except (IndexError, TypeError, ValueError) as error:
-        sys.exit(str(error) if sys.argv[1:] else __doc__.partition("\n")[0])
+        same = reproduce(response_of(*asked))
+    except ValueError as error:
+        sys.exit(str(error))
     sys.exit(0 if same else 1)
 
 

@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 from fiberweb.validation.certificate import certificate
 
 to_log(snakemake)
@@ -10,3 +10,4 @@ print("run", snakemake.wildcards.run)
 
 response = products.read(snakemake.input[0])
 products.write(certificate(response, **snakemake.params.scoring), snakemake.output[0])
+origin.write(snakemake.output[0], snakemake.input, snakemake.params.recipe)

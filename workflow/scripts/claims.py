@@ -4,7 +4,7 @@ from pathlib import Path
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 from fiberweb.claims.judge import evaluate
 
 to_log(snakemake)
@@ -12,3 +12,4 @@ tables = {Path(path).stem: products.read(path) for path in snakemake.input.table
 params = snakemake.params
 table = evaluate(tables, snakemake.wildcards.setup, params.modules, params.published_tables)
 products.write(table, snakemake.output[0])
+origin.write(snakemake.output[0], snakemake.input, params.recipe)

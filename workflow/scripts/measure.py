@@ -2,10 +2,11 @@
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 
 to_log(snakemake)
 given = [products.read(path) for path in snakemake.input.tables]
 for (make, options, threaded), path in zip(snakemake.params.calls, snakemake.output, strict=True):
     workers = {"workers": snakemake.threads} if threaded else {}
     products.write(products.function(make)(*given, **options, **workers), path)
+    origin.write(path, snakemake.input.tables, snakemake.params.recipe)

@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 
 to_log(snakemake)
 source, params = snakemake.input, snakemake.params
@@ -18,3 +18,4 @@ tables = source.tables if isinstance(source.tables, list) else [source.tables]
 print(params.make, *map(str, tables))
 made = products.function(params.make)(*map(products.read, tables), **given)
 products.write(made, snakemake.output[0])
+origin.write(snakemake.output[0], source, params.recipe)
