@@ -1,9 +1,13 @@
 # Everything needs Python 3.11 or newer and make; the rest is put into .venv.
 # Overrides: make figures CORES=8, make test PYTHON=python3.12, and for the claims about the authors'
-# own tables (G1 to G3) make published TABLES=folder
+# own tables (G1 to G3) make published TABLES=folder; of the report, what it is of, the config laid
+# over config/config.yaml and where it goes:
+# make report SHOWN="report_described report_published" CONFIG=my.yaml REPORT=results/mine/report
 
 PYTHON ?= python3
 CORES ?= 2
+SHOWN ?= report_described
+REPORT ?= results/report
 
 VENV := .venv
 STAMP := $(VENV)/.installed
@@ -12,6 +16,9 @@ VENV_0_3_2 := .venv-0.3.2
 STAMP_0_3_2 := $(VENV_0_3_2)/.installed
 VENV_SLURM := .venv-slurm
 STAMP_SLURM := $(VENV_SLURM)/.installed
+LAID := $(if $(CONFIG),--configfile $(CONFIG))
+VENV_REPORT := .venv-report
+STAMP_REPORT := $(VENV_REPORT)/.installed
 AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 
 # what the workflow starts as `python` is the one in .venv
@@ -48,6 +55,13 @@ resume: $(STAMP) ## go on with the last call that was killed, stopped or failed
 smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 	$(SNAKEMAKE) figures --cores $(CORES) --configfile config/smoke.yaml
 
+report: $(STAMP) ## figures, tables, claims and provenance as report.html and report.zip in results/
+	$(SNAKEMAKE) $(SHOWN) --cores $(CORES) $(LAID)
+	$(SNAKEMAKE) $(SHOWN) $(LAID) --report-stylesheet workflow/report/style.css \
+	    --report $(REPORT).html
+	$(SNAKEMAKE) $(SHOWN) $(LAID) --report-stylesheet workflow/report/style.css \
+	    --report $(REPORT).zip
+
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --no-loadscope-reorder
 
@@ -69,6 +83,15 @@ test-slurm: $(STAMP_SLURM) ## the smoke run through a SLURM on this machine: Deb
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
 
+test-report: $(STAMP) $(STAMP_REPORT) ## report in Chromium, metadata by their own checkers: 15 minutes
+	PYTHONPATH=. $(VENV_REPORT)/bin/python -m pytest --confcutdir tests/report tests/report
+
+reproduce: $(STAMP) ## one run again from its own file, compared: make reproduce RUN=name-or-file
+	$(VENV)/bin/python -m fiberweb.tools.reproduce $(RUN)
+
+crate: $(STAMP_REPORT) ## results as a Workflow Run RO-Crate, described by ro-crate-metadata.json
+	PYTHONPATH=. $(VENV_REPORT)/bin/python -m fiberweb.tools.crate $(or $(RESULTS),results)
+
 certificates: $(STAMP) ## whom certificates accuse: 236 scenes, over an hour
 	$(VENV)/bin/python -m fiberweb.tools.certificates
 
@@ -81,7 +104,7 @@ status: $(STAMP) ## how far the workflow is, from another terminal
 	@$(VENV)/bin/python -m fiberweb.tools.status
 
 clean: ## remove what was installed and the caches; results stay
-	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_SLURM) .pytest_cache .hypothesis .ruff_cache
+	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_SLURM) $(VENV_REPORT) .pytest_cache .hypothesis .ruff_cache
 
 # What is called with a folder and a lock file.
 define install
@@ -103,6 +126,9 @@ $(STAMP): envs/requirements.lock
 
 $(STAMP_SLURM): envs/slurm.lock envs/requirements.lock
 	$(call install,$(VENV_SLURM),$<)
+
+$(STAMP_REPORT): envs/report.lock
+	$(call install,$(VENV_REPORT),$<)
 
 # The NumPy and Numba that PyElastica 0.3.2 needs end with Python 3.11.
 $(STAMP_0_3_2): envs/pyelastica-0.3.2.lock

@@ -3,13 +3,10 @@
 #
 #   snakemake --cores 2 figures      the paper's text (setup `described`)
 #   snakemake --cores 2 published    the authors' code (setup `published`)
-#   snakemake published --config published_all=True --profile profiles/slurm      every run of the
-#                                    authors, on a cluster
+#   snakemake published --profile profiles/slurm --config published_all=True     all the authors' runs
 #   snakemake --cores 2 topology     one study alone
 #   snakemake --cores 2 compliant    the same with crossings that give (setup `compliant`)
-#   snakemake --cores 2 claims       the paper's claims in every setup, side by side
 #   snakemake --cores 2 recordings   a score card of each recording that the config lists
-#   snakemake --cores 2 accuracy     error against cost, and limits of the step (some 12 minutes)
 
 import atexit
 import os
@@ -40,22 +37,25 @@ include: "workflow/rules/buckling.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/recordings.smk"
+include: "workflow/rules/report.smk"
 
 
-rule figures:
-    default_target: True
-    input:
-        FILES.products("described"),
+for setup in SETUPS:
 
+    rule:
+        name:
+            {"described": "figures"}.get(setup, setup)
+        default_target: setup == "described"
+        input:
+            FILES.products(setup),
 
-rule published:
-    input:
-        FILES.products("published"),
-
-
-rule compliant:
-    input:
-        FILES.products("compliant"),
+    rule:
+        name:
+            f"report_{setup}"
+        input:
+            FILES.reported(setup),
+            # written by every call that makes something, so it is there once the rest is
+            ancient(report(lambda _: FILES.calls(), category="Provenance")),
 
 
 for study in studies.STUDIES:
@@ -87,10 +87,9 @@ onstart:
 onsuccess:
     workflow.call.unlink(missing_ok=True)
     done = list(workflow.dag.finished_jobs)
-    read = {job.wildcards.recording: job.output for job in done if job.rule.name == "recording"}
-    for name in sorted(read):
-        for line in findings(name, read[name].sanity):
-            print(line)
+    read = [job for job in done if job.rule.name == "recording"]
+    for line in findings({job.wildcards.recording: job.output.sanity for job in read}):
+        print(line)
     workflow.progress.write(progress.FINISHED)
     timed.write(RESULTS, "snakemake")
     print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")

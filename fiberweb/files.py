@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,9 +11,11 @@ from fiberweb import studies
 from fiberweb.config import Config
 from fiberweb.errors import unknown_key
 from fiberweb.model.scene import SETUPS
-from fiberweb.recipes import BEST
+from fiberweb.products import function
+from fiberweb.recipes import BEST, SCRIPTS
 from fiberweb.runs import Run
 
+CALLS = "report/provenance.html"
 SUFFIXES = {setup: f"-{setup}" for setup in SETUPS} | {"described": ""}  # of figures
 
 
@@ -69,6 +72,33 @@ class Files:
         taking_part = [study for study in studies.STUDIES if setup in studies.setups(study)]
         files = [file for study in taking_part for file in self.drawn(study, setup)]
         return [*files, f"{self.results}/tables/{setup}/claims.csv"]
+
+    def reported(self, setup: str) -> list[str]:
+        """`products`, and a page for each that the report cannot show as it is."""
+        made = self.products(setup)
+        waiting = any(studies.waits(study, setup) for study in studies.STUDIES)
+        shown = [*made, *([self.table(BEST, setup)] if waiting else [])]
+        names = [Path(file).relative_to(self.results).as_posix() for file in shown]
+        pages = [f"{self.results}/report/{name}.html" for name in names if name[-4:] != ".png"]
+        return made + pages
+
+    def calls(self) -> list[str]:
+        """The page of what made the results, if there is one."""
+        page = Path(self.results, CALLS)
+        return [str(page)] if page.exists() else []
+
+    def about(self, file: str) -> tuple[str, str]:
+        """Category and caption of a page, by the path among the results of what it shows; of a
+        table, what the function that makes it says of itself first."""
+        name = Path(file).name
+        if name.endswith(".gif"):
+            return "Animations", studies.caption("buckling", "described")
+        if name == "claims.csv":
+            return "Claims", (SCRIPTS.parent / "report" / "claims.rst").read_text("utf-8")
+        make = "fiberweb.studies.ridge.best:best_unbuckled"
+        if name != BEST:
+            make = studies.load(self.tables[name]).TABLES[name].make
+        return "Tables", inspect.getdoc(function(make)).partition("\n\n")[0]
 
     def counted(self, made: Iterable[str]) -> str:
         """How many of these files lie in each folder; those of all runs are counted as one."""

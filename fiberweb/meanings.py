@@ -28,6 +28,14 @@ RUN = {
     "elements_per_section": "elements on a section as long as the spacing; authors: their mesh",
     "time_step": ("step of the integration", "s"),
     "sample_rate": ("of the frames", "Hz"),
+    "engine_source": "hash of the code that the response depends on",
+    "versions": "of the packages of the engine",
+}
+# attributes of any file
+FILE = {
+    "Conventions": "version of the CF conventions, which the file follows",
+    "title": "what the file is",
+    "source": "fiberweb; or, of a recording, the name of the file that was read",
 }
 
 
@@ -58,7 +66,7 @@ def explained(*groups: Meanings, attributes: Meanings | None = None) -> Callable
                 check(product.columns, meanings, maker)
             else:
                 check(product.variables, meanings, maker)
-                check(product.attrs, made.attributes, maker)
+                check(product.attrs, made.attributes | FILE, maker)
                 for name, variable in product.variables.items():
                     text, unit = text_and_unit(meanings[name])
                     units = {"units": unit or "1"} if variable.dtype.kind in NUMBERS else {}

@@ -4,29 +4,43 @@ from __future__ import annotations
 
 import json
 import platform
+import shlex
 import subprocess
 import sys
+from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+
+from fiberweb.files import CALLS
+from fiberweb.pages import of_calls
+from fiberweb.source import source_hash
 
 PACKAGES = ("snakemake", "numpy", "scipy", "numba", "pyelastica", "xarray", "pandas", "matplotlib")
 
 
 def add_call(results: str | Path) -> None:
-    """Add one call to <results>/provenance.json."""
+    """Add one call to <results>/provenance.json, and show all on a page of the report."""
     path = Path(results) / "provenance.json"
     changes = _git("status", "--porcelain")
     call = {
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
         "commit": _git("rev-parse", "HEAD"),
         "uncommitted_changes": None if changes is None else bool(changes),
+        "engine_source": source_hash(),
         "python": platform.python_version(),
         "machine": platform.platform(),
         "versions": {package: _installed(package) for package in PACKAGES},
     }
     calls = [*_earlier(path), call]
+    _write(path, json.dumps(calls, indent=2))
+    _write(Path(results, CALLS), of_calls(calls))
+
+
+def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps(calls, indent=2), encoding="utf-8")
+    partial.write_text(text, encoding="utf-8")
     partial.replace(path)
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from fiberweb import source, studies
 from fiberweb.config import Config
 from fiberweb.folders import tables_in
+from fiberweb.model.scene import SETUPS
 from fiberweb.runs import Run, runs
 from fiberweb.studies.base import Table
 
@@ -34,6 +35,17 @@ def code(script: str, *names: str) -> str:
     """Digest of a script and of the code that modules or functions depend on; a comment or the
     layout of code does not change it."""
     return source.digest(*names, script=SCRIPTS / f"{script}.py")
+
+
+def of_recording() -> str:
+    """Of any recording, whose file and options are looked at beside it."""
+    return code("recording", "fiberweb.recordings.read", "fiberweb.products")
+
+
+def of_card(read: dict) -> str:
+    """Of the score card of a recording that was read with these options."""
+    made_by = code("card", "fiberweb.scoring.card", "fiberweb.figures.card", "fiberweb.products")
+    return digest_of(made_by, of_recording(), read)
 
 
 class Recipes:
@@ -128,6 +140,31 @@ class Recipes:
             [self.table(file, setup) for file in studies.judged_by(setup)],
             [hashlib.sha256(Path(path).read_bytes()).hexdigest() for path in published],
         )
+
+    def joined_claims(self) -> str:
+        """Of the claims of all setups side by side."""
+        return digest_of(
+            code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
+            [self.claims(setup) for setup in SETUPS],
+        )
+
+    def animations(self) -> str:
+        """Of the animations of the study `buckling`."""
+        section = self._config.buckling
+        return digest_of(
+            code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
+            (section.seconds, section.frame_rate),
+            self.responses("buckling", "described"),
+        )
+
+    def page(self, file: str) -> str:
+        """Of a page of the report, by the path among the results of what it shows."""
+        _, *setup, name = file.split("/")
+        if name.endswith(".gif"):
+            shown = self.animations()
+        else:
+            shown = self.claims(*setup) if name == "claims.csv" else self.table(name, *setup)
+        return digest_of(code("page", "fiberweb.pages"), shown)
 
     def _choice(self, study: str, setup: str) -> str:
         """Of what chooses a study's runs from the possible ones."""

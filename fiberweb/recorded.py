@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -65,17 +65,17 @@ def recorded(sections: Iterable[RecordingSection]) -> dict[str, Recorded]:
     return found
 
 
-def findings(name: str, path: str | Path) -> Iterator[str]:
-    """What is not in order with a recording, a line each; its log has all that was looked at.
+def findings(sanity: Mapping[str, str | Path]) -> Iterator[str]:
+    """What is not in order with recordings, a line each; their logs have all that was looked at.
 
     Args:
-        name: of the recording.
-        path: its table of sanity.
+        sanity: the table of what was found in each recording, by its name.
     """
-    with open(path, encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            if row["severity"] != "ok":
-                yield f"{name}: {row['severity']}: {row['sentence']}"
+    for name, path in sorted(sanity.items()):
+        with open(path, encoding="utf-8", newline="") as file:
+            for row in csv.DictReader(file):
+                if row["severity"] != "ok":
+                    yield f"{name}: {row['severity']}: {row['sentence']}"
 
 
 def _files(section: RecordingSection) -> Iterator[tuple[str, Path]]:

@@ -42,7 +42,7 @@ def test_a_caption_names_the_setup():
 def test_what_is_not_in_order_with_a_recording(tmp_path):
     path = tmp_path / "sanity.csv"
     path.write_text('severity,sentence\nok,the clock\nwarning,"a gap, of 3"\n')
-    assert list(findings("take", path)) == ["take: warning: a gap, of 3"]
+    assert list(findings({"take": path})) == ["take: warning: a gap, of 3"]
 
 
 def test_tables_of_a_folder(tmp_path):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,6 +60,7 @@ COORDINATES = {
 }
 _DIMS = {"nonlinear": "order", "memory": "lag", "c": ()}
 ATTRIBUTES = RUN | {
+    "scoring_versions": "of the packages that scored",
     "n_signals": "how many there are: x and y of each readout",
     "scoring": "clean, or published: as the authors scored",
     "alpha": "ridge penalty, against the sum of squares",
@@ -256,6 +258,7 @@ def score(
     coords = {"order": capacity.orders, "lag": capacity.lags}
     attrs = {key: response.attrs[key] for key in RUN if key in response.attrs}
     attrs |= {"sample_rate": rate, "n_signals": 2 * response.sizes["readout"]}
+    attrs["scoring_versions"] = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     attrs |= asdict(chosen) | {"shuffle": int(chosen.shuffle)}  # NetCDF has no booleans
     return xr.Dataset(variables, coords, attrs)
 

@@ -38,8 +38,6 @@ ATTRIBUTES = RUN | {
         "largest work or that"
     ),
     "elements": "how many there are in all",
-    "engine_source": "hash of the code that the response depends on",
-    "versions": "of the packages of the engine",
 }
 
 

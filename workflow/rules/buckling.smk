@@ -5,7 +5,7 @@ rule animation:
     input:
         lambda wildcards: of_runs("response.nc", study_runs("buckling", "described")),
     output:
-        report(FILES.animations, caption="../report/figure.rst", category="Figures"),
+        FILES.animations,
     log:
         "<logs>/figures/animations.log",
     conda:
@@ -13,12 +13,7 @@ rule animation:
     params:
         seconds=CONFIG.buckling.seconds,
         frame_rate=CONFIG.buckling.frame_rate,
-        caption=studies.caption("buckling", "described"),
-        recipe=lambda wildcards: digest_of(
-            code("animation", "fiberweb.studies.buckling.figure", "fiberweb.products"),
-            (CONFIG.buckling.seconds, CONFIG.buckling.frame_rate),
-            RECIPES.responses("buckling", "described"),
-        ),
+        recipe=lambda wildcards: RECIPES.animations(),
     message:
         "Drawing the animations"
     script:

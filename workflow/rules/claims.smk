@@ -8,11 +8,7 @@ rule setup_claims:
         ],
         published=tables_in(CONFIG.published_tables),
     output:
-        report(
-            "<results>/tables/{setup}/claims.csv",
-            caption="../report/claims.rst",
-            category="Claims",
-        ),
+        "<results>/tables/{setup}/claims.csv",
     log:
         "<logs>/claims/{setup}.log",
     localrule: True
@@ -39,10 +35,7 @@ rule claims:
     conda:
         "../../envs/environment.yaml"
     params:
-        recipe=lambda wildcards: digest_of(
-            code("join_claims", "fiberweb.claims.judge", "fiberweb.products"),
-            [RECIPES.claims(setup) for setup in SETUPS],
-        ),
+        recipe=lambda wildcards: RECIPES.joined_claims(),
     message:
         "The claims of all setups side by side"
     script:

@@ -14,7 +14,7 @@ from fiberweb.folders import tables_in
 from fiberweb.layers import check_call, read, typed
 from fiberweb.model.scene import SETUPS
 from fiberweb.provenance import add_call
-from fiberweb.recipes import BEST, Recipes, code, digest_of
+from fiberweb.recipes import BEST, Recipes, code, of_card, of_recording
 from fiberweb.recorded import findings, recorded
 from fiberweb.runs import check, run_table, runs
 from fiberweb.written import READ_ALL, broken
@@ -94,4 +94,5 @@ wildcard_constraints:
     table="|".join(FILES.tables),
     figure="|".join(FILES.figures),
     recording="[^/]+",
+    shown=r"(tables|figures)/.+",
     engine="|".join(ENGINES),

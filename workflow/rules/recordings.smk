@@ -20,7 +20,7 @@ rule recording:
     params:
         path=lambda wildcards: str(RECORDED[wildcards.recording].path),
         options=lambda wildcards: RECORDED[wildcards.recording].read,
-        recipe=code("recording", "fiberweb.recordings.read", "fiberweb.products"),
+        recipe=of_recording(),
     message:
         "Reading {wildcards.recording}"
     script:
@@ -45,11 +45,7 @@ rule card:
         "../../envs/environment.yaml"
     params:
         options=lambda wildcards: RECORDED[wildcards.recording].card,
-        recipe=lambda wildcards: digest_of(
-            code("card", "fiberweb.scoring.card", "fiberweb.figures.card", "fiberweb.products"),
-            code("recording", "fiberweb.recordings.read", "fiberweb.products"),
-            RECORDED[wildcards.recording].read,
-        ),
+        recipe=lambda wildcards: of_card(RECORDED[wildcards.recording].read),
     message:
         "Scoring the recording {wildcards.recording}"
     script:

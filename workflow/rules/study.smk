@@ -50,6 +50,7 @@ rule figure:
             "<results>/figures/{figure}{suffix}.png",
             caption="../report/figure.rst",  # shows params.caption
             category=lambda wildcards: figure_made(wildcards)[1].category,
+            labels={"figure": "{figure}{suffix}"},
         ),
         pdf="<results>/figures/{figure}{suffix}.pdf",
     log:

@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 from fiberweb.validation.certificate import certificate
 
 to_log(
@@ -14,3 +14,4 @@ response = products.read(snakemake.input[0])
 made = certificate(response, **snakemake.params.scoring)
 print(made.to_string())
 products.write(made, snakemake.output[0])
+origin.write(snakemake.output[0], snakemake.input, snakemake.params.recipe)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 from fiberweb.claims.judge import evaluate
 
 to_log(snakemake, "holds the paper's claims against the tables of a setup", "a second")
@@ -13,3 +13,4 @@ params = snakemake.params
 table = evaluate(tables, snakemake.wildcards.setup, params.modules, params.published_tables)
 print(table[["id", "verdict", "value"]].to_string())
 products.write(table, snakemake.output[0])
+origin.write(snakemake.output[0], snakemake.input, params.recipe)

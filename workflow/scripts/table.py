@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 
 source, params = snakemake.input, snakemake.params
 again = source.get("responses")
@@ -20,3 +20,4 @@ print("of:", *map(str, tables), f"{len(capacities or [])} capacities, {len(again
 print("options:", params.options or "none")
 made = products.function(params.make)(*map(products.read, tables), **given)
 products.write(made, snakemake.output[0])
+origin.write(snakemake.output[0], source, params.recipe)

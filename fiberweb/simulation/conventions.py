@@ -1,0 +1,22 @@
+"""What the CF conventions ask of a file beside a name and a unit for every variable, which
+`fiberweb.meanings` gives: what it is, and what made it.
+
+Time is in seconds from the start, and no date: it has no standard_name, since CF's `time` is one.
+"""
+
+from __future__ import annotations
+
+import xarray as xr
+
+CONVENTIONS = "CF-1.11"
+
+
+def labelled(data: xr.Dataset, name: str) -> xr.Dataset:
+    """A Dataset with the attributes that CF asks for; a value of its own stays as it is.
+
+    Args:
+        name: of the file, for its title.
+    """
+    title = f"{name} of {data.attrs['run']}" if "run" in data.attrs else name
+    said = {"Conventions": CONVENTIONS, "title": title, "source": "fiberweb"}
+    return data.assign_attrs(said | data.attrs)

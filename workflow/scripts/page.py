@@ -1,0 +1,10 @@
+"""What the report shows of a table, a dataset or an animation."""
+
+from pathlib import Path
+
+from logs import to_log
+
+from fiberweb.pages import page
+
+to_log(snakemake)
+Path(snakemake.output[0]).write_text(page(snakemake.input[0]), encoding="utf-8")
