@@ -81,7 +81,7 @@ def test_an_array_that_is_small_only_while_it_is_packed(tmp_path, small):
     values = {"u": np.zeros(1000), "points": np.zeros((1000, 2500, 2))}
     scipy.io.savemat(path, values, do_compression=True)
     assert path.stat().st_size < 10**5
-    with pytest.raises(ValueError, match="stands for .* numbers"):
+    with pytest.raises(ValueError, match=r"stands for .* numbers"):
         read_recording(path, quiet=True, **MAT)
 
 
@@ -89,10 +89,10 @@ def test_a_point_in_a_frame_far_away(tmp_path, small):
     path = tmp_path / "a.csv"
     path.write_text("x,y,frame,particle\n1,1,0,0\n1,1,90000000000000000,1\n1,1,10000000,1\n")
     options = {"input": "p0.x", "rate": RATE, "hidden": "leave out"}
-    with pytest.raises(ValueError, match="row 3: 9e.16 is no whole number"):
+    with pytest.raises(ValueError, match=r"row 3: 9e.16 is no whole number"):
         read_recording(path, quiet=True, **options)
     path.write_text(path.read_text().replace("90000000000000000", "9000000000"))
-    with pytest.raises(ValueError, match="stands for 3.6e.10 numbers"):
+    with pytest.raises(ValueError, match=r"stands for 3.6e.10 numbers"):
         read_recording(path, quiet=True, **options)
 
 
