@@ -18,7 +18,7 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
 .DEFAULT_GOAL := help
-.PHONY: help figures published published_all compliant accuracy resume smoke test test-faults test-slurm test_authors docs certificates bench env clean
+.PHONY: help figures published published_all compliant accuracy resume smoke test test-faults test-slurm test_authors docs certificates bench status env clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z_-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile
@@ -67,6 +67,9 @@ bench: $(STAMP) ## what a run and a job cost on this machine
 	$(VENV)/bin/python -m fiberweb.tools.bench
 
 env: $(STAMP) ## .venv alone, from envs/requirements.lock
+
+status: $(STAMP) ## how far the workflow is, from another terminal
+	@$(VENV)/bin/python -m fiberweb.tools.status
 
 clean: ## remove what was installed and the caches; results stay
 	rm -rf $(VENV) $(VENV_0_3_2) $(VENV_SLURM) .pytest_cache .hypothesis .ruff_cache

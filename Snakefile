@@ -76,6 +76,8 @@ onstart:
         workflow.forks = forks.start(PYTHON, RESULTS)
         if workflow.forks:
             sys.executable = forks.interpreter(PYTHON)
+    workflow.progress = progress.Progress(RESULTS, under_way)
+    logger.addHandler(workflow.progress)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS)
     workflow.call = calls.begin(sys.argv[1:])
@@ -88,13 +90,15 @@ onsuccess:
     for name in sorted(read):
         for line in findings(name, read[name].sanity):
             print(line)
+    workflow.progress.write("finished")
     timed.write(RESULTS, "snakemake")
     print(f"Done: {FILES.counted(file for job in done for file in job.output)}.")
 
 
 onerror:
-    timed.write(RESULTS, "snakemake")
     logs = [path for job in workflow.scheduler.failed for path in job.log]
     for log in timed.without_end(logs):
         print(f"{log} has no end: its job was killed (out of memory?), or the disk is full.")
     print("No finished run is lost: without the cause above, `make resume` goes on from here.")
+    workflow.progress.write("failed")
+    timed.write(RESULTS, "snakemake")

@@ -19,7 +19,7 @@ from fiberweb.config import Config, lab
 from fiberweb.model.authors import SKIPPED_FRAMES
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.limits import check_frames
-from fiberweb.simulation.plan import request
+from fiberweb.simulation.plan import expected_seconds, request
 
 DIGITS = 12  # of the hash in a name; six were shared by seeds among some ten thousand
 # what a scene may have in place of its own without another limit of the step
@@ -71,6 +71,11 @@ class Run:
     def engine(self) -> str:
         """Which engine runs this."""
         return request(self.scene, **self.numerics).engine
+
+    @property
+    def expected_seconds(self) -> float:
+        """About how long it takes on a fast core."""
+        return expected_seconds(self.scene, **self.numerics)
 
     def check(self) -> None:
         """Raise ValueError, one sentence, if no engine can run this as asked for."""

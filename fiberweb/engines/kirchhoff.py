@@ -221,17 +221,15 @@ def advance(
             if not damped:
                 tie(pairs, groups, relative, before, kicked, state, step)
             elif tied.merged:  # made one point last, so that they are
-                viscosity.foresee(viscous, x, y, vx, vy, step, 1.0)
+                viscosity.foresee(viscous, vx, vy)
                 viscosity.damp(viscous, damping, step, stride)
-                viscosity.foresee(viscous, x, y, vx, vy, step, -1.0)
-                viscosity.look(viscous, vx, vy)
+                viscosity.take_back(viscous, vx, vy)
                 tie(pairs, groups, relative, before, kicked, state, step)
                 viscosity.learn(viscous, vx, vy)
             else:  # springs first, or viscous stresses after them would limit the step
-                viscosity.foresee(viscous, x, y, vx, vy, step, 1.0)
+                viscosity.foresee(viscous, vx, vy)
                 tie(pairs, groups, relative, before, kicked, state, step)
-                viscosity.foresee(viscous, x, y, vx, vy, step, -1.0)
-                viscosity.look(viscous, vx, vy)
+                viscosity.take_back(viscous, vx, vy)
                 viscosity.damp(viscous, damping, step, stride)
                 viscosity.learn(viscous, vx, vy)
                 crossings.gather_pairs(pairs, relative, x, y, vx, vy)

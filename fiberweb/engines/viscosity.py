@@ -79,7 +79,8 @@ def build_viscosity(
     time = mesh.scene.loss_time
     count = len(interleaving.nodes) if time > 0.0 else 0
     factors = Factors(*packed(*np.zeros((9, count))))
-    tied = np.unique(interleaving.place[layout.joints])
+    # unsigned, since Numba looks for negative indices at every access otherwise
+    tied = np.unique(interleaving.place[layout.joints]).astype(np.uint64)
     work = *packed(*np.zeros((7, count))), tied, *np.zeros((2, len(tied)))
     if not count:
         return Viscosity(Compliance(*packed(*np.zeros((3, 0)))), factors, *work)
@@ -123,30 +124,32 @@ def views(viscosity, scratch, rods, state, s):
 
 
 @kernel
-def foresee(viscosity, x, y, vx, vy, step, sign):
-    """Push the nodes of crossings as they were in the step before, or take that back."""
+def foresee(viscosity, vx, vy):
+    """Push the nodes of crossings as they were in the step before ..."""
     for i in range(viscosity.tied.shape[0]):
         n = viscosity.tied[i]
-        vx[n] += sign * viscosity.push_x[i]
-        vy[n] += sign * viscosity.push_y[i]
-        x[n] += sign * step * viscosity.push_x[i]
-        y[n] += sign * step * viscosity.push_y[i]
+        vx[n] += viscosity.push_x[i]
+        vy[n] += viscosity.push_y[i]
 
 
 @kernel
-def look(viscosity, vx, vy):
-    """Keep the velocities of crossings' nodes before a change ..."""
+def take_back(viscosity, vx, vy):
+    """... take that back, and keep what they move by before a change ..."""
     for i in range(viscosity.tied.shape[0]):
-        viscosity.push_x[i] = -vx[viscosity.tied[i]]
-        viscosity.push_y[i] = -vy[viscosity.tied[i]]
+        n = viscosity.tied[i]
+        vx[n] -= viscosity.push_x[i]
+        vy[n] -= viscosity.push_y[i]
+        viscosity.push_x[i] = -vx[n]
+        viscosity.push_y[i] = -vy[n]
 
 
 @kernel
 def learn(viscosity, vx, vy):
     """... and after it what it made of them."""
     for i in range(viscosity.tied.shape[0]):
-        viscosity.push_x[i] += vx[viscosity.tied[i]]
-        viscosity.push_y[i] += vy[viscosity.tied[i]]
+        n = viscosity.tied[i]
+        viscosity.push_x[i] += vx[n]
+        viscosity.push_y[i] += vy[n]
 
 
 @kernel

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fiberweb.arguments import positive, shown, spelt, true_or_false, whole
 from fiberweb.engines import ENGINES, load
 from fiberweb.errors import unknown_key
-from fiberweb.model.authors import STEP
+from fiberweb.model.authors import ELEMENT, STEP
 from fiberweb.model.scene import Scene
 from fiberweb.simulation import memory
 
@@ -195,6 +195,21 @@ def request(
     memory.check(scene, elements_per_section)
     forced = true_or_false("force_time_step", force_time_step)
     return Request(chosen, elements_per_section, time_step, forced)
+
+
+def expected_seconds(scene: Scene, **numerics) -> float:
+    """About how long a run takes, from what is asked for alone: without mesh and stability limit.
+
+    Args:
+        scene, **numerics: as for `plan`.
+    """
+    asked = request(scene, **numerics)
+    length = scene.network.spacing / (asked.elements_per_section or 1)
+    if asked.elements_per_section is None:
+        length = ELEMENT
+    step = asked.time_step or safety(scene) * length / scene.wave_speed
+    element_steps = scene.network.fibre_lengths.sum() / length * scene.duration / step
+    return 1e-9 * load(asked.engine).NANOSECONDS * element_steps
 
 
 def stubby(scene: Scene) -> bool:

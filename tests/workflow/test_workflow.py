@@ -2,6 +2,7 @@
 edited."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -17,6 +18,7 @@ from fiberweb import config, studies
 from fiberweb.runs import runs
 from fiberweb.simulation import dataset
 from fiberweb.studies.ridge.best import best_unbuckled, read_best
+from fiberweb.tools.status import status
 from tests.workflow.conftest import ROOT, SMOKE
 
 FINISH = {"table": 4, "figure": 1}
@@ -159,6 +161,12 @@ def test_smoke_writes_everything(smoked):
     assert (out / "provenance.json").exists()
     assert all(run in (out / f"logs/simulate/{run}.log").read_text() for run in ran)
     assert not (smoked.folder / "results").exists()  # dry runs of the paper write nothing
+
+
+@pytest.mark.slow
+def test_another_terminal_is_told_that_it_has_finished(smoked):
+    said = status(smoked.folder / "out")
+    assert re.match(r"finished at .*: (\d+) of \1 runs and (\d+) of \2 jobs done\n", said)
 
 
 @pytest.mark.slow

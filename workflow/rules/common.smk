@@ -6,7 +6,7 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from fiberweb import calls, forks, studies, timed
+from fiberweb import calls, forks, progress, studies, timed
 from fiberweb.config import check_folders, load
 from fiberweb.engines import ENGINES
 from fiberweb.files import SUFFIXES, Files
@@ -45,6 +45,19 @@ def study_runs(study, setup):
         best = read_best(checkpoints.ridge_best.get(setup=setup).output[0])
         return runs(CONFIG, study, setup, best)
     return RECIPES.possible(study, setup)
+
+
+def under_way():
+    """What is to be known of each job that is to run, by its number."""
+    return {job.jobid: known(job) for job in workflow.dag.needrun_jobs()}
+
+
+def known(job):
+    run = RUNS.get(job.wildcards.get("run"))
+    if run is None:
+        return progress.Job(job.rule.name)
+    weight = run.expected_seconds if job.rule.name == progress.RUN else 1.0
+    return progress.Job(job.rule.name, f"{run.study}, {run.scene.setup}", weight)
 
 
 try:

@@ -36,7 +36,6 @@ def draw(given: dict, setup: str) -> Figure:
         given: "twin" (`tables.by_readouts`) and "twin_curves" (`tables.curves`).
     """
     rows, curves = (plots.rows_of(given[name], name, setup) for name in ("twin", "twin_curves"))
-    curves = curves[curves["verdict"]]
     figure = style.figure(style.DOUBLE, 172.0)
     top, middle, bottom = figure.subfigures(3, 1, height_ratios=[54, 60, 58])
     _over_angle(top, rows, SCORINGS[setup])

@@ -61,14 +61,14 @@ def by_readouts(
 def curves(
     response_paths: Sequence[str | Path], cameras: Sequence[Mapping], scoring: Mapping
 ) -> pd.DataFrame:
-    """Capacity of every single target, of all markers and of `TRIVIAL`; arguments as for
-    `by_readouts`.
+    """Capacity of every single target by the first reading, of all markers and of `TRIVIAL`;
+    arguments as for `by_readouts`.
 
     Returns:
         Columns `CURVE_COLUMNS`: target is "order" (at: Legendre order) or "lag" (at: s).
     """
     frames = []
-    for film, row in _films(response_paths, cameras, scoring):
+    for film, row in _films(response_paths, _first(cameras), scoring):
         for name, x in _readouts(film, groups_of=(ALL,)).items():
             if not _known(film, name):
                 continue
@@ -98,16 +98,20 @@ def sensitivity(
         Its columns, parameter (empty where nothing is changed) and value (NaN there).
     """
     frames = []
-    for path, camera, choice in zip(response_paths, cameras, choices, strict=True):
+    for path, camera, choice in zip(response_paths, _first(cameras), choices, strict=True):
         parameter, changed, value = choice.partition("=")
-        first = dict(camera) | {"frame_step": camera["frame_step"][:1]}
         frames.append(
-            by_readouts([path], [first], scoring).assign(
+            by_readouts([path], [camera], scoring).assign(
                 parameter=parameter if changed else "none",
                 value=float(value) if changed else math.nan,
             )
         )
     return tables.ordered(pd.concat(frames, ignore_index=True))
+
+
+def _first(cameras: Sequence[Mapping]) -> list[dict]:
+    """The same with the first reading of the frame rate alone."""
+    return [dict(camera) | {"frame_step": camera["frame_step"][:1]} for camera in cameras]
 
 
 def _films(paths, cameras, scoring) -> Iterator[tuple[xr.Dataset, dict]]:
