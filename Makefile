@@ -24,6 +24,13 @@ AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
 # what the workflow starts as `python` is the one in .venv
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 
+# Snakemake does not start without a home folder that can be written, nor without a name for the
+# user; in some containers there is neither.
+ifneq ($(shell test -n "$$HOME" -a -w "$$HOME" && echo yes),yes)
+    export HOME := $(CURDIR)/.snakemake/home
+endif
+export LOGNAME ?= $(shell id -u)
+
 .DEFAULT_GOAL := help
 .PHONY: $(shell sed -n 's/^\([a-z][a-z_-]*\):.*/\1/p' $(firstword $(MAKEFILE_LIST)))
 

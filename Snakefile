@@ -96,8 +96,8 @@ onsuccess:
 
 
 onerror:
-    workflow.progress.write(progress.FAILED)
-    timed.write(RESULTS, "snakemake")
     print("No finished run is lost: without the cause below, `make resume` goes on from here.")
     # after what Snakemake itself still says
     atexit.register(failed.tell, workflow.scheduler.failed, RUNS)
+    workflow.progress.write(progress.FAILED)
+    timed.write(RESULTS, "snakemake")

@@ -3,6 +3,7 @@ then, and a file that another terminal can ask for it (`python -m fiberweb.tools
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import os
@@ -125,10 +126,11 @@ class Progress(logging.Handler):
             "line": self.line(), "pid": os.getpid(), "command": self.command, "ended": ended,
             "begun": self.begun, "at": time.time(),
         }  # fmt: skip
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        partial = self.path.with_suffix(".partial")
-        partial.write_text(json.dumps(state, indent=2), encoding="utf-8")
-        partial.replace(self.path)
+        with contextlib.suppress(OSError):  # a full disk stops jobs, which say so, and not this
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            partial = self.path.with_suffix(".partial")
+            partial.write_text(json.dumps(state, indent=2), encoding="utf-8")
+            partial.replace(self.path)
 
 
 def clock(moment: float) -> str:

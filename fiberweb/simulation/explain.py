@@ -43,24 +43,16 @@ def describe(plan: Plan) -> str:
     per_sample = steps_per_sample(scene, plan.numerics.time_step)
     step = 1.0 / (scene.sample_rate * per_sample)
     steps = per_sample * (scene.samples - 1)
+    seconds = 1e-9 * load(plan.engine).NANOSECONDS * steps * elements
     lines = [
         f"choice: {_choice(plan)}",
         f"error: {_error(plan)}",
         f"left out: {_left_out(plan)}",
         f"step: {1e6 * step:.3g} us, {_against(step, plan.limit, scene)}",
         f"damping: {_damping(scene, step)}",
-        f"cost: {steps:.3g} steps x {elements} elements, about {_duration(cost(plan))}",
+        f"cost: {steps:.3g} steps x {elements} elements, about {_duration(seconds)}",
     ]
     return "\n".join(lines + [f"beware: {text}" for text in _warnings(scene)])
-
-
-def cost(plan: Plan) -> float:
-    """CPU time that a run will take, s, by what its engine was measured to take a step."""
-    from fiberweb.engines.base import steps_per_sample
-
-    scene = plan.scene
-    steps = steps_per_sample(scene, plan.numerics.time_step) * (scene.samples - 1)
-    return 1e-9 * load(plan.engine).NANOSECONDS * steps * plan.mesh.elements
 
 
 def _choice(plan: Plan) -> str:

@@ -85,6 +85,13 @@ def test_a_place_that_cannot_be_written(tmp_path, monkeypatch):
     assert folder.parent.stat().st_mode & 0o077 == 0
 
 
+def test_a_home_folder_that_the_system_does_not_know(tmp_path, monkeypatch):
+    monkeypatch.setenv("FIBERWEB_CACHE", "~nobody-of-this-name/cache")
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.warns(UserWarning, match="cannot be kept in ~nobody-of-this-name/cache/"):
+        assert cache.folder().is_dir()
+
+
 def test_a_temporary_place_of_somebody_else_is_not_used(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     theirs = cache._temporary()

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -10,6 +11,7 @@ import pytest
 
 from fiberweb.engines import cache
 from tests.faults.conftest import finished, one_way
+from tests.workflow.conftest import ROOT
 
 # as a user who is no root, whom the system has no name for, and whose files these are
 NOBODY = ("unshare", "--user", "--map-user=12345", "--map-group=12345")
@@ -62,26 +64,38 @@ def test_kernels_of_another_engine_and_none_of_this(done, expected, kernels):
 
 @nobody
 @one_way
-@pytest.mark.parametrize("place", ["read-only", "no home folder", "home that is not there"])
-def test_no_place_for_kernels(done, expected, kernels, tmp_path, place):
+def test_kernels_that_cannot_be_kept(done, expected, kernels, tmp_path):
     """The temporary folder has them, which here has them already."""
     instead = tmp_path / "temporary" / "fiberweb-12345"
     shutil.copytree(kernels, instead)
     instead.chmod(0o700)
-    kernels.chmod(0o500)
-    for path in kernels.rglob("*"):
+    for path in (kernels, *kernels.rglob("*")):
         path.chmod(0o500 if path.is_dir() else 0o400)
-    environment = {"TMPDIR": str(instead.parent)}
-    unset = ["FIBERWEB_CACHE", "NUMBA_CACHE_DIR", "HOME", "USER", "LOGNAME"]
-    if place == "read-only":
-        environment["FIBERWEB_CACHE"], unset = str(kernels), []
-    if place == "home that is not there":
-        environment["HOME"] = "/proc/nobody"
-    without = ["env", *(f"--unset={name}" for name in unset)]
-    given = [f"{name}={value}" for name, value in environment.items()]
-    said = simulated_again(done, expected, *NOBODY, *without, *given)
+    done.environment["TMPDIR"] = str(instead.parent)
+    done.environment["LOGNAME"] = "somebody"
+    said = simulated_again(done, expected, *NOBODY)
     assert "compiled kernels cannot be kept in" in said and str(instead) in said
     assert "set FIBERWEB_CACHE to a folder that can be written" in said
+
+
+@nobody
+@one_way
+@pytest.mark.parametrize("home", [[], ["HOME=/proc/nobody"]], ids=["none", "not there"])
+def test_no_home_folder(fresh, expected, home):
+    """As in a container, for a user without a name: make finds a place for all of it."""
+    call = fresh.start()
+    fresh.job(call, "simulate")
+    os.killpg(call.pid, signal.SIGKILL)
+    call.wait()
+    kept = fresh.folder / ".snakemake" / "home" / ".cache" / "fiberweb" / cache.folder().name
+    shutil.copytree(cache.folder(), kept)
+    shutil.copy(ROOT / "Makefile", fresh.folder)
+    (fresh.folder / ".venv").symlink_to(sys.prefix)
+    unset = ("FIBERWEB_CACHE", "NUMBA_CACHE_DIR", "HOME", "USER", "LOGNAME")
+    without = [f"--unset={name}" for name in unset]
+    fresh.call(*NOBODY, "env", *without, *home, "make", "--old-file=.venv/.installed", "resume")
+    assert fresh.made() == expected
+    assert "cannot be kept" not in logs(fresh)
 
 
 TOY = """

@@ -11,7 +11,7 @@ from fiberweb.untrusted import guard
 from tests.fuzz.hostile import HOSTILE, LAUGHS
 
 ROOT = Path(__file__).parents[2]
-SECONDS, MEGABYTES = 1.0, 500  # of CPU time beyond a call that does nothing, and in all
+SECONDS, MEGABYTES = 2.0, 500  # of CPU time beyond a call that does nothing, and in all
 OBEYED = b"""__use_yte__: true
 __definitions__: ["import os; os.mkdir('harm')"]
 results: ?os.mkdir('harm')
