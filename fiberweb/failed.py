@@ -34,7 +34,9 @@ def line(rule: str, wildcards: Mapping[str, str], log: str | Path, key: str | No
         log: its file.
         key: of the config that asks for the run; None of other jobs.
     """
-    what = " ".join([rule, *wildcards.values()]) + (f", which {key} asks for," if key else "")
+    what = " ".join(filter(None, [rule, *wildcards.values()])) + (
+        f", which {key} asks for," if key else ""
+    )
     reason = _reason(Path(log))
     helps = (remedy for words, remedy in REMEDIES.items() if words in reason)
     remedy = next(helps, REPORT)

@@ -24,7 +24,7 @@ def test_run_key_reason_log_and_remedy_on_one_line(tmp_path, log, reason, remedy
     path = tmp_path / "web.log"
     if log is not None:
         path.write_text(log)
-    line = failed.line("capacity", {"run": "web-n03"}, path, "webs")
+    line = failed.line("capacity", {"run": "web-n03", "suffix": ""}, path, "webs")
     assert line.startswith("capacity web-n03, which webs asks for, failed: ")
     assert reason in line and remedy in line.split(f"Log: {path}. What to do: ")[1]
     assert "\n" not in line

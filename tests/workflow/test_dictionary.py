@@ -33,7 +33,7 @@ def test_files_of_the_smoke_run_hold_what_the_page_says(smoked):
 def test_a_column_that_names_its_unit_has_it():
     named = 0
     for made in dictionary():
-        for name, meaning in (made.meanings | made.attributes).items():
+        for name, meaning in (made.meanings | (made.attributes or {})).items():
             if suffix := SUFFIX.search(name):
                 assert text_and_unit(meaning)[1] == UNITS[suffix[1]], (made.files, name)
                 named += 1
