@@ -69,7 +69,7 @@ def test_a_key_of_any_value(paths, data):
     changed: dict = {}
     for path in paths:
         value = data.draw(ANYTHING)
-        if path[0] == "recordings":
+        if path[0] == "recordings" and path[1:]:
             changed["recordings"] = [{"path": "a.csv", path[1]: value}]
             continue
         section = changed
