@@ -31,12 +31,6 @@ RUN = {
     "engine_source": "hash of the code that the response depends on",
     "versions": "of the packages of the engine",
 }
-# attributes of any file
-FILE = {
-    "Conventions": "version of the CF conventions, which the file follows",
-    "title": "what the file is",
-    "source": "fiberweb; or, of a recording, the name of the file that was read",
-}
 
 
 def text_and_unit(meaning: str | tuple[str, str]) -> tuple[str, str]:
@@ -66,7 +60,7 @@ def explained(*groups: Meanings, attributes: Meanings | None = None) -> Callable
                 check(product.columns, meanings, maker)
             else:
                 check(product.variables, meanings, maker)
-                check(product.attrs, made.attributes | FILE, maker)
+                check(product.attrs, made.attributes, maker)
                 for name, variable in product.variables.items():
                     text, unit = text_and_unit(meanings[name])
                     units = {"units": unit or "1"} if variable.dtype.kind in NUMBERS else {}

@@ -9,6 +9,7 @@ from __future__ import annotations
 import xarray as xr
 
 CONVENTIONS = "CF-1.11"
+OF_FILES = {"Conventions": CONVENTIONS, "source": "fiberweb"}
 
 
 def labelled(data: xr.Dataset, name: str) -> xr.Dataset:
@@ -18,5 +19,12 @@ def labelled(data: xr.Dataset, name: str) -> xr.Dataset:
         name: of the file, for its title.
     """
     title = f"{name} of {data.attrs['run']}" if "run" in data.attrs else name
-    said = {"Conventions": CONVENTIONS, "title": title, "source": "fiberweb"}
-    return data.assign_attrs(said | data.attrs)
+    return data.assign_attrs(OF_FILES | {"title": title} | data.attrs)
+
+
+def unlabelled(data: xr.Dataset) -> xr.Dataset:
+    """The same without what `labelled` said of the file."""
+    said = [name for name, value in OF_FILES.items() if data.attrs.get(name) == value]
+    return data.drop_attrs(deep=False).assign_attrs(
+        {name: value for name, value in data.attrs.items() if name not in (*said, "title")}
+    )

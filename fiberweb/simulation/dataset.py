@@ -14,7 +14,7 @@ import xarray as xr
 
 from fiberweb import timed
 from fiberweb.model.scene import Scene
-from fiberweb.simulation.conventions import labelled
+from fiberweb.simulation.conventions import labelled, unlabelled
 from fiberweb.simulation.memory import of_this_machine
 
 MOTIONS = ("displacement", "centre_line")
@@ -87,7 +87,7 @@ def load(path: str | Path) -> xr.Dataset:
                     f"{path} holds {1e-9 * data.nbytes:.3g} GB, and this machine has "
                     f"{1e-9 * of_this_machine():.3g} GB of memory; read it on a larger one"
                 )
-            return data.load()
+            return unlabelled(data.load())
     except FileNotFoundError:
         raise
     except Exception as error:  # whatever a damaged header or a flipped bit ends in

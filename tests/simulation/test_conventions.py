@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from fiberweb import Scene, crosshatch, score, simulate
 from fiberweb.scoring.capacity import traces
@@ -20,7 +21,8 @@ def response():
 )
 def test_names_and_units(response, make, tmp_path):
     dataset.save(make(response), tmp_path / "a.nc")
-    data = dataset.load(tmp_path / "a.nc")
+    with xr.open_dataset(tmp_path / "a.nc") as data:
+        data.load()
     for name, variable in data.variables.items():
         assert variable.attrs["long_name"], name
         assert ("units" in variable.attrs) == (variable.dtype.kind in "iuf"), name

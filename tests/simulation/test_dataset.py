@@ -65,10 +65,14 @@ def test_the_unit_is_that_of_the_quietest_tenth_and_not_of_the_start():
 
 def test_the_same_response_gives_the_same_bytes(tmp_path):
     response = simulate(Scene(crosshatch(2, length=0.5), duration=1.0, centre_lines=True), "draft")
-    for name in ("one.nc", "two.nc"):
-        dataset.save(response, tmp_path / name)
-    assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
-    lines = dataset.load(tmp_path / "one.nc")["centre_line"]
+    paths = [
+        tmp_path / folder / "response.nc" for folder in ("one", "two")
+    ]  # the title has the name
+    for path in paths:
+        path.parent.mkdir()
+        dataset.save(response, path)
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+    lines = dataset.load(paths[0])["centre_line"]
     assert "2^-20" in lines.attrs["comment"]
     assert float(np.abs(lines - response["centre_line"]).max()) < 1e-9
 
