@@ -1,7 +1,9 @@
 """What a dry run accepts, runs through: every run of an accepted config starts."""
 
 import math
+from functools import cache
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
@@ -53,6 +55,7 @@ LOSS = st.fixed_dictionaries(
     optional={"loss_frequency": st.sampled_from([0.1, 300.0])},
 )
 BONDS = st.fixed_dictionaries({"bond_stiffness": st.sampled_from([1e-6, 0.1, math.inf])})
+CHECK = cache(Run.check)  # what started in one example need not be resolved again in the next
 BODY = st.lists(SPRINGS | LOSS | BONDS, max_size=3)
 
 
@@ -74,6 +77,7 @@ def changes(draw) -> dict:
 @pytest.mark.slow
 @settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=[*HealthCheck])
 @given(changed=changes())
+@patch.object(Run, "check", CHECK)
 def test_every_run_of_an_accepted_config_starts(changed):
     """Scenes are resolved to a mesh and a stable step, and not integrated."""
     try:
