@@ -111,10 +111,10 @@ def crosshatch(n: int, length: float | None = None, spacing: float | None = None
             f"spacing = {spacing}"
         )
     if spacing is None:
-        length = _metres("length", length)
+        length = positive("length", length, METRES)
     else:
-        length = _metres("spacing", spacing)
-        length *= n + 1
+        length = positive("spacing", spacing, METRES) * (n + 1)
+    check_magnitude("length", length, SHORTEST, LONGEST)
     spacing = length / (n + 1)
     at = spacing * np.arange(1, n + 1)
     horizontal = [[[0.0, y], [length, y]] for y in at]
@@ -150,7 +150,8 @@ def polygon(n: int, diameter: float = 0.5, diagonals: str = "all") -> Network:
     _refuse_endless(n, MOST_VERTICES, "vertices")
     if n % 2:
         raise ValueError(f"n = {n}: a polygon has an even number of vertices, for its diameters")
-    diameter, diagonals = _metres("diameter", diameter), plain(diagonals)
+    diameter, diagonals = positive("diameter", diameter, METRES), plain(diagonals)
+    check_magnitude("diameter", diameter, SHORTEST, LONGEST)
     if diagonals not in ("all", "skip-one"):
         raise ValueError(f"diagonals = {diagonals!r} is not one of 'all', 'skip-one'")
     # vertex 0 at -x, so that the first diameter runs from left to right
@@ -264,12 +265,6 @@ def _refuse_loose(fibres: np.ndarray, stations, driven_fibre: int) -> None:
             f"fibre {min(loose)} of the web would never move: no crossings lead from it to driven "
             f"fibre {driven_fibre}; let it cross another one, or leave it out"
         )
-
-
-def _metres(name: str, value) -> float:
-    length = positive(name, value, METRES)
-    check_magnitude(name, length, SHORTEST, LONGEST)
-    return length
 
 
 def _refuse_endless(n: int, most: int, of: str, name: str = "n") -> None:
