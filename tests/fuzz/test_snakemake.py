@@ -18,20 +18,27 @@ results: ?os.mkdir('harm')
 """
 
 
+# in a small process of its own: a child of a large one counts that one's memory as once its own
+USED = """
+import resource, subprocess, sys
+ended = subprocess.run(sys.argv[1:])
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, file=open("used", "w"))
+sys.exit(ended.returncode)
+"""
+
+
 def called(folder, *options):
     """What a dry run from another folder that has to fail prints, and its CPU time (s) and memory
     (MB)."""
     command = [sys.executable, "-m", "snakemake", "topology", "-n", "--cores", "1"]
-    with (folder / "printed").open("w+") as printed:
-        process = subprocess.Popen(
-            [*command, "--snakefile", ROOT / "Snakefile", *options],
-            cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=printed, stderr=printed,
-        )  # fmt: skip
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        assert process.returncode == 1
-        printed.seek(0)
-        return printed.read(), used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+    done = subprocess.run(
+        [sys.executable, "-c", USED, *command, "--snakefile", ROOT / "Snakefile", *options],
+        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    assert done.returncode == 1
+    return done.stdout, *map(float, (folder / "used").read_text().split())
 
 
 @pytest.fixture(scope="module")
