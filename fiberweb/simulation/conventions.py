@@ -51,14 +51,10 @@ VARIABLES = {
 }
 
 
-def labelled(data: xr.Dataset, name: str) -> xr.Dataset:
-    """A Dataset with the attributes that CF asks for; a value of its own stays as it is.
-
-    Args:
-        name: of the file, for its title.
-    """
+def labelled(data: xr.Dataset) -> xr.Dataset:
+    """A Dataset with the attributes that CF asks for; a value of its own stays as it is."""
     labelled = data.copy()
-    title = f"{name} of {data.attrs['run']}" if "run" in data.attrs else name
+    title = str(data.attrs.get("run", "fibre networks as physical reservoirs"))
     said = {"Conventions": CONVENTIONS, "title": title, "source": "fiberweb"}
     labelled.attrs = said | data.attrs
     for variable in map(str, labelled.variables):
