@@ -12,13 +12,9 @@ CONVENTIONS = "CF-1.11"
 OF_FILES = {"Conventions": CONVENTIONS, "source": "fiberweb"}
 
 
-def labelled(data: xr.Dataset, name: str) -> xr.Dataset:
-    """A Dataset with the attributes that CF asks for; a value of its own stays as it is.
-
-    Args:
-        name: of the file, for its title.
-    """
-    title = f"{name} of {data.attrs['run']}" if "run" in data.attrs else name
+def labelled(data: xr.Dataset) -> xr.Dataset:
+    """A Dataset with the attributes that CF asks for; a value of its own stays as it is."""
+    title = str(data.attrs.get("run", "fibre networks as physical reservoirs"))
     return data.assign_attrs(OF_FILES | {"title": title} | data.attrs)
 
 

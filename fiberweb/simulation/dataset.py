@@ -42,7 +42,7 @@ def save(data: xr.Dataset, path: str | Path) -> None:
     partial = path.with_name(f".{path.name}.{os.getpid()}")
     if "scene" in data.attrs and not Scene.from_json(data.attrs["scene"]).disturbance:
         data = data.assign({name: _stored(data[name]) for name in MOTIONS if name in data})
-    data = labelled(data, path.stem)
+    data = labelled(data)
     encoding = {
         name: DEFLATED | _chunks(name, variable) | _filling(data, name)
         for name, variable in data.variables.items()

@@ -11,6 +11,7 @@ ARGUMENTS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ]  # fmt: skip
+PATIENCE = 300_000  # ms, of a machine that has other things to do
 WINDOW = {"width": 1500, "height": 950}
 # of the libraries in Snakemake's wheel, about themselves: nothing here can be done about them
 KNOWN = ("cdn.tailwindcss.com should not be used", "input spec uses Vega-Lite v3")
@@ -71,8 +72,11 @@ def opened(path):
         context = playwright.chromium.launch_persistent_context(
             profile, executable_path=CHROMIUM, args=ARGUMENTS, viewport=WINDOW, offline=True
         )
-        report = Report(context.new_page())
-        report.page.goto(path.resolve().as_uri())
-        report.page.locator("#loading-screen").wait_for(state="hidden")
-        yield report
-        context.close()
+        context.set_default_timeout(PATIENCE)
+        try:
+            report = Report(context.new_page())
+            report.page.goto(path.resolve().as_uri())
+            report.page.locator("#loading-screen").wait_for(state="hidden")
+            yield report
+        finally:
+            context.close()

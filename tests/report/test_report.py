@@ -66,16 +66,15 @@ def report(request, files, tmp_path_factory):
         zipfile.ZipFile(files[1]).extractall(folder)
         path = folder / "report" / "report.html"
     with opened(path) as report:
-        report.kind = request.param
+        report.screenshots = SCREENSHOTS / request.param
         yield report
         assert report.wrong == [] and report.outside == []
 
 
 def looked_at(report, name):
     """Take a screenshot."""
-    folder = SCREENSHOTS / report.kind
-    folder.mkdir(parents=True, exist_ok=True)
-    report.page.screenshot(path=folder / f"{name}.png")
+    report.screenshots.mkdir(parents=True, exist_ok=True)
+    report.page.screenshot(path=report.screenshots / f"{name}.png")
 
 
 def test_everything_is_in_it(report, expected):

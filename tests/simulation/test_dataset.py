@@ -65,9 +65,7 @@ def test_the_unit_is_that_of_the_quietest_tenth_and_not_of_the_start():
 
 def test_the_same_response_gives_the_same_bytes(tmp_path):
     response = simulate(Scene(crosshatch(2, length=0.5), duration=1.0, centre_lines=True), "draft")
-    paths = [
-        tmp_path / folder / "response.nc" for folder in ("one", "two")
-    ]  # the title has the name
+    paths = [tmp_path / folder / "response.nc" for folder in ("one", "two")]
     for path in paths:
         path.parent.mkdir()
         dataset.save(response, path)

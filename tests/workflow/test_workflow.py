@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fiberweb import config, studies
+from fiberweb import config, files, studies
 from fiberweb.runs import runs
 from fiberweb.simulation import dataset
 from fiberweb.studies.ridge.best import best_unbuckled, read_best
@@ -92,6 +92,12 @@ def test_every_study_is_a_target(tree):
     every = [*STUDIES, "accuracy"]
     planned = tree.jobs(*every, "--dry-run", *SMOKE[:-1], "results=new")
     assert {study: planned.get(study) for study in every} == dict.fromkeys(every, 1)
+
+
+def test_the_report_has_a_page_for_all_that_is_no_picture(tree):
+    made = files.Files(PAPER).products("described")
+    planned = tree.planned("report_described")
+    assert planned["page"] == sum(not file.endswith(".png") for file in made) + 1  # ridge_best.csv
 
 
 def test_a_figure_behind_the_checkpoint_waits_for_it(tree):
