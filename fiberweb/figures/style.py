@@ -142,5 +142,6 @@ def save(drawn: Figure, path: str | Path) -> tuple[Path, Path]:
     path.parent.mkdir(parents=True, exist_ok=True)
     png, pdf = path.with_name(f"{stem}.png"), path.with_name(f"{stem}.pdf")
     drawn.savefig(png, dpi=RESOLUTION)
+    drawn.set_layout_engine("none")  # to look for what was found takes as long as to draw
     drawn.savefig(pdf, metadata={"CreationDate": None})
     return png, pdf

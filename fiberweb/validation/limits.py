@@ -170,23 +170,33 @@ def status(recording: Recording) -> str:
 
 
 def measure(point: Point, steps: int) -> tuple:
-    """One row of the stability table.
+    """One row of the stability table: `gently`, and the limit that is found once more under the
+    point's own force, which can strain the network."""
+    predicted, found, automatic = gently(point, steps)
+    mesh, steps = build(point.scene(), point.elements), LOADED * _slower(point, steps)
+    loaded = found_limit(mesh, point.engine, predicted, steps)
+    return (
+        point.engine, f"{point.n}x{point.n}", point.spacing, point.diameter, point.tension,
+        mesh.scene.force, point.stiffness, point.damping, point.elements, predicted, loaded,
+        found, predicted / found, automatic,
+    )  # fmt: skip
 
-    The limit is looked for with a gentle force, where the network is as stiff as at rest, and
-    once more under the point's own, which can strain it; the prediction is of the first.
-    """
-    scene, steps = point.scene(), steps // SLOWER.get(point.engine, 1)
+
+def gently(point: Point, steps: int) -> tuple[float, float, str]:
+    """The predicted limit (s), the one found with a gentle force, where the network is as stiff as
+    at rest and as the prediction has it, and the status of a run under the point's own force with
+    the automatic step."""
+    steps = _slower(point, steps)
     gentle = build(point.scene(min(GENTLE, point.buckling)), point.elements)
     predicted = load(point.engine).largest_step(gentle)
     found = found_limit(gentle, point.engine, predicted, steps)
-    mesh = build(scene, point.elements)
-    loaded = found_limit(mesh, point.engine, predicted, LOADED * steps)
+    mesh = build(point.scene(), point.elements)
     automatic = run_for(mesh, point.engine, safety(mesh.scene) * predicted, LOADED * steps)
-    return (
-        point.engine, f"{point.n}x{point.n}", point.spacing, point.diameter, point.tension,
-        scene.force, point.stiffness, point.damping, point.elements, predicted, loaded,
-        found, predicted / found, status(automatic),
-    )  # fmt: skip
+    return predicted, found, status(automatic)
+
+
+def _slower(point: Point, steps: int) -> int:
+    return steps // SLOWER.get(point.engine, 1)
 
 
 def points(box: dict[str, list[float]]) -> Iterator[Point]:
