@@ -16,10 +16,10 @@ VENV_0_3_2 := .venv-0.3.2
 STAMP_0_3_2 := $(VENV_0_3_2)/.installed
 VENV_SLURM := .venv-slurm
 STAMP_SLURM := $(VENV_SLURM)/.installed
-LAID := $(if $(CONFIG),--configfile $(CONFIG))
 VENV_REPORT := .venv-report
 STAMP_REPORT := $(VENV_REPORT)/.installed
 AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
+LAID := $(if $(CONFIG),--configfile $(CONFIG)) $(AUTHORS)
 
 # what the workflow starts as `python` is the one in .venv
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
@@ -90,7 +90,7 @@ test-slurm: $(STAMP_SLURM) ## the smoke run through a SLURM on this machine: Deb
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors
 
-test-report: $(STAMP) $(STAMP_REPORT) ## report in Chromium, metadata by their own checkers: 15 minutes
+test-report: smoke $(STAMP_REPORT) ## report in Chromium, metadata by their own checkers: 15 minutes
 	PYTHONPATH=. $(VENV_REPORT)/bin/python -m pytest --confcutdir tests/report tests/report
 
 reproduce: $(STAMP) ## one run again from its own file, compared: make reproduce RUN=name-or-file

@@ -54,7 +54,9 @@ def write(table: str | Path, made_of: Iterable[str | Path], recipe: str) -> None
     }
     said = {"@context": CONTEXT, "url": Path(table).name, "notes": [note]}
     text = json.dumps(said, indent=1, sort_keys=True, allow_nan=False)
-    beside(table).write_text(text, encoding="utf-8")
+    partial = Path(f"{table}.partial")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(beside(table))  # a later table reads it: never a half
 
 
 def _read(path: Path) -> dict:
