@@ -41,7 +41,7 @@ class Faulty(Tree):
         """What a command prints, which must end in the code expected (None: in any but 0)."""
         done = subprocess.run(
             command, cwd=self.folder, env=self.environment | environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=3600,
         )  # fmt: skip
         good = done.returncode == expected if expected is not None else done.returncode != 0
         assert good, f"{done.returncode}\n{done.stdout}"

@@ -29,21 +29,21 @@ def kill_snakemake(tree, call, job):
     assert "jobs are still at work" in refused and str(job.pid) in refused
     assert (tree.folder / ".snakemake" / "locks").is_dir()
     job.resume()
-    _, alive = psutil.wait_procs([job], timeout=120)
+    _, alive = psutil.wait_procs([job], timeout=600)
     assert not alive
 
 
 def kill_all(tree, call, job):
     os.killpg(call.pid, signal.SIGKILL)
     call.wait()
-    _, alive = psutil.wait_procs([job], timeout=60)
+    _, alive = psutil.wait_procs([job], timeout=600)
     assert not alive
 
 
 def interrupt(tree, call, job):
     os.killpg(call.pid, signal.SIGINT)
     job.resume()
-    assert call.wait(timeout=120) != 0
+    assert call.wait(timeout=600) != 0
     assert "Traceback" not in tree.printed()
 
 
