@@ -23,7 +23,7 @@ from fiberweb.simulation.plan import expected_seconds, request
 from fiberweb.studies.base import Point
 
 # What a config may ask for in all: the paper's has 5256 runs, of networks with 19 864 readouts.
-MOST_RUNS, MOST_READOUTS = 20_000, 250_000
+MOST_RUNS, MOST_READOUTS = 12_000, 250_000
 DIGITS = 12  # of the hash in a name; six were shared by seeds among some ten thousand
 # what a scene may have in place of its own without another limit of the step
 AT_ANY = {"force": 1.0, "seed": 0, "duration": 1.0, "disturbance": 0.0, "centre_lines": False}
