@@ -57,7 +57,7 @@ HOSTILE = {
         b"robustness: {seed: [" + b", ".join(b"%d" % n for n in range(30_000)) + b"]}",
         ["10000 keys and values"],
     ),
-    "a grid of 360 000 points": (GRID, ["20000 runs", "ridge"]),
+    "a grid of 360 000 points": (GRID, ["12000 runs", "ridge"]),
     "1e9 elements": (
         b"numerics: {accuracy: null, elements_per_section: 1000000000}",
         ["elements_per_section = 1000000000", "at most"],
