@@ -136,7 +136,9 @@ class Progress(logging.Handler):
 def clock(moment: float) -> str:
     """A time of day, with the day if it is not today."""
     then = datetime.fromtimestamp(moment)
-    return then.strftime("%H:%M" if then.date() == datetime.now().date() else "%a %H:%M")
+    return then.strftime(
+        "%H:%M" if then.date() == datetime.fromtimestamp(time.time()).date() else "%a %H:%M"
+    )
 
 
 def span(seconds: float) -> str:
