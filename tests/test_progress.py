@@ -14,7 +14,7 @@ from fiberweb import Scene, crosshatch, progress
 from fiberweb.engines import load
 from fiberweb.progress import Job, Progress
 from fiberweb.simulation.plan import expected_seconds, plan
-from fiberweb.tools.status import status
+from fiberweb.tools.status import latest, status
 
 JOBS = {1: Job("simulate", "ridge, described", 2.0), 2: Job("simulate", "size, described", 6.0)}
 JOBS |= {3: Job("capacity", "ridge, described"), 4: Job("capacity", "size, described")}
@@ -91,6 +91,14 @@ def test_another_terminal_is_told(tmp_path, monkeypatch):
     # killed, and its number given to another process since
     path.write_text(json.dumps(state | {"pid": os.getpid(), "begun": 0.0}))
     assert status(tmp_path).startswith("nothing is running: killed after")
+
+
+def test_the_last_call_is_asked_for(tmp_path, clock):
+    assert latest(tmp_path) == tmp_path
+    Progress(tmp_path, lambda: JOBS)
+    Progress(tmp_path / "smoke", lambda: JOBS)
+    os.utime(tmp_path / progress.FILE, ns=(0, 0))
+    assert latest(tmp_path) == tmp_path / "smoke"
 
 
 @pytest.mark.parametrize(

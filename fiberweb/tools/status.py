@@ -1,4 +1,5 @@
-"""`python -m fiberweb.tools.status [results]`: how far the workflow is that writes there."""
+"""`python -m fiberweb.tools.status [results]`: how far the workflow is that writes there; without a
+folder, in results/ or one folder deeper, whichever was written to last."""
 
 from __future__ import annotations
 
@@ -42,10 +43,16 @@ def _alive(state: dict) -> bool:
         return False
 
 
+def latest(results: str | Path) -> Path:
+    """That folder or one in it, such as results/smoke: where a call wrote last."""
+    found = [*Path(results).glob(FILE), *Path(results).glob(f"*/{FILE}")]
+    return max(found, key=lambda path: path.stat().st_mtime_ns).parent if found else Path(results)
+
+
 def main() -> None:
     """Print it."""
     try:
-        print(status(sys.argv[1] if len(sys.argv) > 1 else "results"))
+        print(status(sys.argv[1] if len(sys.argv) > 1 else latest("results")))
     except ValueError as error:
         sys.exit(str(error))
 
