@@ -25,7 +25,7 @@ from itertools import chain
 import numpy as np
 
 from fiberweb.engines import ENGINES, load
-from fiberweb.model.network import crosshatch, polygon
+from fiberweb.model.network import crosshatch, polygon, web
 from fiberweb.model.scene import SETUPS, Scene
 from fiberweb.simulation import memory
 from fiberweb.simulation.plan import ACCURACIES, Plan, Request, plan, request
@@ -55,6 +55,13 @@ def _about(low: float, high: float, share_of_zeros: float = 0.0, sign: bool = Fa
 
 def _one_of(*values) -> Draw:
     return lambda rng: values[rng.integers(len(values))]
+
+
+def _lines(rng: np.random.Generator) -> list:
+    """Fibres from side to side of a box, in both directions."""
+    size, across, along = _about(0.05, 2.0)(rng), *rng.integers(1, 5, 2)
+    fibres = [[[0.0, near], [size, far]] for near, far in size * rng.random((across, 2))]
+    return fibres + [[[near, 0.0], [far, size]] for near, far in size * rng.random((along, 2))]
 
 
 FIELDS: dict[str, Draw] = {
@@ -105,7 +112,14 @@ POLYGON = {
     "diameter": _about(0.05, 2.0),
     "diagonals": _one_of("all", "skip-one"),
 }
-NAMES = re.compile(rf"\b({'|'.join({**FIELDS, **NUMERICS, **CROSSHATCH, **POLYGON})})\b")
+WEB = {
+    "fibres": _lines,
+    "driven_fibre": lambda rng: int(rng.integers(3)),
+    "driven_distance": _about(0.01, 2.0),
+}
+NETWORKS = {crosshatch: (CROSSHATCH, 0.7), polygon: (POLYGON, 0.15), web: (WEB, 0.15)}
+KNOWN = {"fibre", *FIELDS, *NUMERICS, *CROSSHATCH, *POLYGON, *WEB}
+NAMES = re.compile(rf"\b({'|'.join(KNOWN)})\b")  # one of which a refusal has to name
 FAR = _about(1e-300, 1e300, 0.05)
 NOTHING = (math.nan, math.inf, -math.inf, -1, 0, 10**9, 10**30, 2.5, True, None, "4", "", [], [1.0])
 
@@ -115,10 +129,13 @@ def drawn(number: int) -> tuple[str, Callable[..., object], dict, dict, dict]:
     `plan`, all by its number."""
     rng = np.random.default_rng(number)
     kind = rng.choice([*KINDS], p=[*KINDS.values()])
-    make, known = (crosshatch, CROSSHATCH) if rng.random() < 0.8 else (polygon, POLYGON)
+    make = [*NETWORKS][rng.choice(3, p=[share for _, share in NETWORKS.values()])]
+    known, _ = NETWORKS[make]
     network = {name: draw(rng) for name, draw in known.items()}
     if make is crosshatch:
         network.pop("length" if rng.random() < 0.5 else "spacing")
+    if make is web and rng.random() < 0.8:
+        network.pop("driven_distance")
     share = {name: 0.05 if name in RARE else SET for name in FIELDS}
     fields = {name: draw(rng) for name, draw in FIELDS.items() if rng.random() < share[name]}
     if fields.get("ends") == "sprung":
@@ -140,6 +157,10 @@ def drawn(number: int) -> tuple[str, Callable[..., object], dict, dict, dict]:
             name = [*every][rng.integers(len(every))]
             if kind == "outside":
                 of[name] = NOTHING[rng.integers(len(NOTHING))]
+            elif name == "fibres":
+                fibres = np.array(every[name](rng))
+                fibres.flat[rng.integers(fibres.size)] = FAR(rng)
+                of[name] = fibres.tolist()
             elif isinstance(every[name](rng), float):
                 of[name] = FAR(rng)
     return str(kind), make, network, fields, numerics
