@@ -25,10 +25,10 @@ from itertools import chain
 import numpy as np
 
 from fiberweb.engines import ENGINES, load
-from fiberweb.model.network import crosshatch, polygon
+from fiberweb.model.network import crosshatch, polygon, web
 from fiberweb.model.scene import SETUPS, Scene
 from fiberweb.simulation import memory
-from fiberweb.simulation.plan import ACCURACIES, Plan, plan, request
+from fiberweb.simulation.plan import ACCURACIES, Plan, Request, plan, request
 from fiberweb.simulation.simulate import run
 
 KINDS = {"near": 0.5, "far": 0.35, "outside": 0.15}
@@ -55,6 +55,13 @@ def _about(low: float, high: float, share_of_zeros: float = 0.0, sign: bool = Fa
 
 def _one_of(*values) -> Draw:
     return lambda rng: values[rng.integers(len(values))]
+
+
+def _lines(rng: np.random.Generator) -> list:
+    """Fibres from side to side of a box, in both directions."""
+    size, across, along = _about(0.05, 2.0)(rng), *rng.integers(1, 5, 2)
+    fibres = [[[0.0, near], [size, far]] for near, far in size * rng.random((across, 2))]
+    return fibres + [[[near, 0.0], [far, size]] for near, far in size * rng.random((along, 2))]
 
 
 FIELDS: dict[str, Draw] = {
@@ -105,7 +112,14 @@ POLYGON = {
     "diameter": _about(0.05, 2.0),
     "diagonals": _one_of("all", "skip-one"),
 }
-NAMES = re.compile(rf"\b({'|'.join({**FIELDS, **NUMERICS, **CROSSHATCH, **POLYGON})})\b")
+WEB = {
+    "fibres": _lines,
+    "driven_fibre": lambda rng: int(rng.integers(3)),
+    "driven_distance": _about(0.01, 2.0),
+}
+NETWORKS = {crosshatch: (CROSSHATCH, 0.7), polygon: (POLYGON, 0.15), web: (WEB, 0.15)}
+KNOWN = {"fibre", *FIELDS, *NUMERICS, *CROSSHATCH, *POLYGON, *WEB}
+NAMES = re.compile(rf"\b({'|'.join(KNOWN)})\b")  # one of which a refusal has to name
 FAR = _about(1e-300, 1e300, 0.05)
 NOTHING = (math.nan, math.inf, -math.inf, -1, 0, 10**9, 10**30, 2.5, True, None, "4", "", [], [1.0])
 
@@ -115,10 +129,13 @@ def drawn(number: int) -> tuple[str, Callable[..., object], dict, dict, dict]:
     `plan`, all by its number."""
     rng = np.random.default_rng(number)
     kind = rng.choice([*KINDS], p=[*KINDS.values()])
-    make, known = (crosshatch, CROSSHATCH) if rng.random() < 0.8 else (polygon, POLYGON)
+    make = [*NETWORKS][rng.choice(3, p=[share for _, share in NETWORKS.values()])]
+    known, _ = NETWORKS[make]
     network = {name: draw(rng) for name, draw in known.items()}
     if make is crosshatch:
         network.pop("length" if rng.random() < 0.5 else "spacing")
+    if make is web and rng.random() < 0.8:
+        network.pop("driven_distance")
     share = {name: 0.05 if name in RARE else SET for name in FIELDS}
     fields = {name: draw(rng) for name, draw in FIELDS.items() if rng.random() < share[name]}
     if fields.get("ends") == "sprung":
@@ -140,6 +157,10 @@ def drawn(number: int) -> tuple[str, Callable[..., object], dict, dict, dict]:
             name = [*every][rng.integers(len(every))]
             if kind == "outside":
                 of[name] = NOTHING[rng.integers(len(NOTHING))]
+            elif name == "fibres":
+                fibres = np.array(every[name](rng))
+                fibres.flat[rng.integers(fibres.size)] = FAR(rng)
+                of[name] = fibres.tolist()
             elif isinstance(every[name](rng), float):
                 of[name] = FAR(rng)
     return str(kind), make, network, fields, numerics
@@ -151,7 +172,9 @@ def end_of(number: int) -> tuple[str, str]:
     try:
         scene = Scene(make(**network), **fields)
         asked = request(scene, **numerics)
-        if sum(memory.needed(scene, asked.elements_per_section).values()) > MOST_MEMORY:
+        if is_large := needed(scene, asked) > MOST_MEMORY:
+            scene = replace(scene, duration=FEWEST / scene.sample_rate)
+        if needed(scene, asked) > MOST_MEMORY:
             return "too large to try", ""
         planned, is_cut = affordable(plan(scene, **numerics))
         response = run(planned)
@@ -163,9 +186,14 @@ def end_of(number: int) -> tuple[str, str]:
         return "FAILED", repr(error)[:300]
     if response.attrs["status"] == "unstable":
         return "unstable", ""
-    if not np.isfinite(response["displacement"]).all():
+    if not all(np.isfinite(response[name]).all() for name in ("input", "displacement")):
         return "FAILED", "NaN and ok"
-    return ("cut short and ok" if is_cut else "ok"), ""
+    return ("cut short and ok" if is_cut or is_large else "ok"), ""
+
+
+def needed(scene: Scene, asked: Request) -> float:
+    """Bytes of memory that a scene takes, about."""
+    return sum(memory.needed(scene, asked.elements_per_section).values())
 
 
 def affordable(planned: Plan) -> tuple[Plan, bool]:

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from snakemake.common.configfile import load_configfile
 
+from fiberweb.arguments import plain
 from fiberweb.config import load
 from fiberweb.recorded import recorded
 from fiberweb.runs import run_table
@@ -99,5 +100,5 @@ def test_a_file_of_damaged_text(tmp_path_factory, data):
         assert is_one_sentence(error)
         return
     if isinstance(held, dict):
-        assert repr(load_configfile(path)) == repr(held) or path.read_bytes()[:1] == b"{"
+        assert repr(plain(load_configfile(path))) == repr(plain(held))
     ends(*SMALL, path)
