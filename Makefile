@@ -78,7 +78,7 @@ test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons
 fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them broken
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/fuzz --hypothesis-profile fuzz
 
-random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 20 minutes of CPU time
+random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 11 minutes of CPU time
 	$(VENV)/bin/python -m fiberweb.tools.random_scenes
 
 test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: about 15 minutes

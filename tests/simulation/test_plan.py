@@ -94,6 +94,8 @@ def test_a_plan_is_simulated_as_its_scene_is():
         (DESCRIBED, {"engine": "cosserat"}, "crossing_stiffness = inf: the cosserat and elastica "
          "engines need a finite spring; give one, or use engine = 'kirchhoff'"),
         (Scene(crosshatch(2, spacing=0.1), filter_order=6), {}, "filter_order = 6: the kirchhoff"),
+        (Scene(crosshatch(2, spacing=0.1), sample_rate=1e-30), {}, "duration = 100 s at "
+         "sample_rate = 1e-30 Hz takes .* steps of .* s, more than any machine gets through"),
     ],
 )  # fmt: skip
 def test_what_is_refused_is_refused_in_one_sentence(scene, asked, words):
