@@ -70,7 +70,7 @@ report: $(STAMP) ## figures, tables, claims and provenance as report.html and re
 	    --report $(REPORT).zip
 
 test: $(STAMP) ## the tests
-	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --no-loadscope-reorder
+	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
 
 test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons: half an hour
 	ANYWHERE=1 $(VENV)/bin/python -m pytest tests/anywhere

@@ -1,8 +1,7 @@
 """What tests of several folders share."""
 
 import os
-from functools import cache
-from pathlib import Path
+from collections import Counter
 
 # tests run side by side, and more threads than cores wait for one another
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -11,7 +10,7 @@ import pytest
 
 from fiberweb.figures import style
 
-WORKFLOW = "tests/workflow/"
+LONGEST = "tests/workflow/test_workflow.py", "tests/engines/", "tests/workflow/"
 
 
 @pytest.fixture
@@ -21,23 +20,12 @@ def unsaved(monkeypatch):
 
 
 def pytest_collection_modifyitems(items):
-    """The workflow's tests come first, because they take longest."""
-    items.sort(key=lambda item: not item.nodeid.startswith(WORKFLOW))
+    """What takes longest comes first, file by file, so that processes end together; and beside the
+    smoke run come engines, which need nothing of it."""
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
 
+    def rank(item):
+        group = (i for i, start in enumerate(LONGEST) if item.nodeid.startswith(start))
+        return next(group, len(LONGEST)), -slow[item.path]
 
-def pytest_xdist_make_scheduler(config, log):
-    """Of two processes, one runs all tests of a file, and one all that look at the smoke run, so
-    that what they share is made once. pytest-xdist 3.8 has groups for it, which pytest 9.2 does not
-    heed."""
-    from xdist.scheduler import LoadScopeScheduling
-
-    @cache
-    def text(file):
-        return Path(config.rootpath, file).read_text()
-
-    class Together(LoadScopeScheduling):
-        def _split_scope(self, nodeid):
-            file = nodeid.split("::")[0]
-            return "smoke run" if "smoked" in text(file) else file
-
-    return Together(config, log)
+    items.sort(key=rank)

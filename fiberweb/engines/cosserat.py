@@ -224,8 +224,7 @@ def advance(
         if not stepping.in_bounds(vx, vy, limit):
             return sample
         if not dead_band:  # which is made of that drift
-            cosine[:] = np.cos(angle)  # the running product drifts by round-off
-            sine[:] = np.sin(angle)
+            passes.aim(angle, cosine, sine)  # the running product drifts by round-off
         for k in range(start, start + per_sample):
             time = (k + 0.5) * step
             if k == start or ramp < 1.0:
@@ -251,7 +250,7 @@ def advance(
                 passes.copy_velocities(state, before)
             if damped:
                 energy.keep(vx, vy, viscous.before_x, viscous.before_y)
-                viscous.before_spin[: omega.shape[0]] = omega
+                passes.copy(omega, viscous.before_spin)
             passes.velocity_pass(*kick_x, rods.decay)
             passes.velocity_pass(*kick_y, rods.decay)
             passes.spin_pass(*turn, rods.spin_kick)

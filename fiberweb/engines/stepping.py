@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fiberweb.engines.base import RUNAWAY, Numerics, fitted_step, readout_arrays
-from fiberweb.engines.jit import kernel
+from fiberweb.engines.jit import both, kernel
 from fiberweb.engines.layout import Interleaving, Layout, packed
 from fiberweb.model.mesh import Mesh
 
@@ -105,7 +105,7 @@ def damped_kick(rate: float, step: float) -> float:
     return -np.expm1(-rate * step) / rate if rate > 0.0 else step
 
 
-@kernel
+@both
 def drive_value(coefficients, rate, time):
     """The input's spline at one time."""
     i = min(int(time * rate), coefficients.shape[0] - 1)

@@ -1,5 +1,6 @@
 """A copy of the tree, so that files can be edited."""
 
+import fcntl
 import multiprocessing
 import os
 import re
@@ -102,9 +103,18 @@ def tree(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def smoked(tree):
-    """The tree after the smoke run."""
-    tree.snakemake("figures", *SMOKE)
+def smoked(tree, tmp_path_factory):
+    """The tree after the smoke run, which is made once for all processes that run tests."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    with open(shared / "smoke", "a+") as made:
+        fcntl.flock(made, fcntl.LOCK_EX)
+        made.seek(0)
+        if not (folder := made.read()):
+            first = Tree(tmp_path_factory.mktemp("smoked"))
+            first.snakemake("figures", *SMOKE)
+            made.write(folder := str(first.folder))
+    shutil.copytree(folder, tree.folder, dirs_exist_ok=True)
     return tree
 
 

@@ -56,7 +56,7 @@ def killed(tree, stage, *arguments):
         for process in scripts(call, stage):
             process.kill()
             found.add(process.pid)
-        time.sleep(0.02)
+        time.sleep(0.1)  # a script takes longer to start, and a look is not free
     assert call.returncode != 0, call.stdout.read()
     return len(found)
 
