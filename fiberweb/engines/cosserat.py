@@ -134,28 +134,22 @@ def coefficients(
         kick_x, kick_y,
         fibres.bending_stiffness[layout.fibre] * layout.bends / layout.span, 0.5 / layout.voronoi,
     )  # fmt: skip
+    of_edge, over_edge = layout.fibre[:-1], layout.solid / layout.edge
+    axial = layout.solid * fibres.axial_stiffness[of_edge]
     over_elements = (
-        layout.edge, layout.solid / layout.edge, np.exp(-uniform * step), stretched * step
+        layout.edge, over_edge, axial, axial * layout.edge,
+        layout.solid * shear_stiffness(mesh)[of_edge], over_edge**2 / rotary_inertia(mesh)[of_edge],
+        np.exp(-uniform * step), stretched * step,
     )  # fmt: skip
     rods = passes.Rods(
         *packed(*(a[interleaving.nodes] for a in over_nodes)),
         *packed(*(a[interleaving.edges] for a in over_elements)),
-        axial=_over_elements(fibres.axial_stiffness, layout, interleaving),
-        shear=_over_elements(shear_stiffness(mesh), layout, interleaving),
-        over_inertia=_over_elements(1.0 / rotary_inertia(mesh), layout, interleaving),
         decay=np.exp(-scene.damping * step),
         spin_kick=kick,
         dead_band=scene.dead_band,
     )
     edges = interleaving.edges
     return rods, passes.Spin((layout.solid * inertia)[edges], uniform[edges])
-
-
-def _over_elements(values: np.ndarray, layout: Layout, interleaving: Interleaving):
-    """What fibres have over their elements; one number if all have the same, which is quicker."""
-    if (values == values[0]).all():
-        return float(values[0])
-    return values[layout.fibre[interleaving.edges]]
 
 
 def kick_before_decay(scene: Scene, step: float) -> float:

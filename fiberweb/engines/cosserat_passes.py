@@ -13,8 +13,9 @@ from fiberweb.engines.energy import (
     pull_work,
     squared_speed,
 )
-from fiberweb.engines.jit import kernel, of, part, summing
+from fiberweb.engines.jit import kernel, summing
 from fiberweb.engines.laplace import REACH
+from fiberweb.engines.series import sine_cosine
 from fiberweb.engines.ties import spring_energy, turn_bonds
 
 
@@ -39,13 +40,13 @@ class Rods(NamedTuple):
     bend: np.ndarray  # EI over the span of a node, N m
     half_over_voronoi: np.ndarray  # 1/m
     edge: np.ndarray  # rest length, m
-    over_edge: np.ndarray  # 1 / edge on elements and 0 in gaps, which carries all that gaps lack
+    over_edge: np.ndarray  # 1 / edge, and like the next four 0 in gaps, 1/m
+    axial: np.ndarray  # EA, N
+    slack: np.ndarray  # EA times edge, N m
+    shear: np.ndarray  # alpha_c G A, N
+    ease: np.ndarray  # 1 / (rho I edge^2), 1 / (kg m)
     spin_decay: np.ndarray  # of angular velocity over a step, at rest
     stretched: np.ndarray  # minus its logarithm's change by dilatation
-    # these three over elements if fibres differ
-    axial: float | np.ndarray  # EA, N
-    shear: float | np.ndarray  # alpha_c G A, N
-    over_inertia: float | np.ndarray  # 1 / (rho I), m / kg
     decay: float  # of a free velocity over a step
     spin_kick: float  # what an angular acceleration gives in a step, before it decays, s
     dead_band: bool  # rotations as in `authors_rotations`
@@ -96,22 +97,21 @@ def pass_views(state, scratch, rods, s):
     """
     x, y, vx, vy, angle, omega, c, sine = state
     fx, fy, length, alpha, _, couple, outer_x, outer_y, _ = scratch
-    kick_x, kick_y, bend, half_over_voronoi, edge, over_edge, spin_decay, stretched = rods[:8]
+    kick_x, kick_y, bend, half_over_voronoi, _, over_edge, axial, slack, shear, ease = rods[:10]
     low, high = (REACH - 1) * s, x.shape[0] - (REACH - 1) * s
     a, b = slice(low, high - s), slice(low + s, high)
     inner, before = slice(b.start, a.stop), slice(low, a.stop - s)
     return (
-        (x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b], omega[a], c[a], sine[a], edge[a],
-         over_edge[a], fx[a], fy[a], length[a], alpha[a], part(rods.axial, a),
-         part(rods.shear, a), part(rods.over_inertia, a)),
+        (x[a], x[b], y[a], y[b], vx[a], vx[b], vy[a], vy[b], omega[a], c[a], sine[a], axial[a],
+         slack[a], shear[a], ease[a], fx[a], fy[a], length[a], alpha[a]),
         (angle[before], angle[inner], length[before], length[inner], bend[inner],
          half_over_voronoi[inner], couple[inner]),
         (c[before], sine[before], c[inner], sine[inner], length[before], length[inner],
          bend[inner], half_over_voronoi[inner], couple[inner]),
         (vx[inner], fx[before], fx[inner], outer_x[inner], kick_x[inner]),
         (vy[inner], fy[before], fy[inner], outer_y[inner], kick_y[inner]),
-        (omega[a], alpha[a], couple[a], couple[b], length[a], over_edge[a], spin_decay[a],
-         stretched[a], part(rods.over_inertia, a)),
+        (omega[a], alpha[a], couple[a], couple[b], length[a], over_edge[a], ease[a],
+         rods.spin_decay[a], rods.stretched[a]),
         (x[inner], vx[inner]),
         (y[inner], vy[inner]),
         (angle[a], omega[a], c[a], sine[a]),
@@ -120,27 +120,24 @@ def pass_views(state, scratch, rods, s):
 
 @kernel
 def stress_pass(
-    x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, edge, over_edge, fx, fy, length, alpha,
-    axial, shear, over_inertia,
+    x0, x1, y0, y1, vx0, vx1, vy0, vy1, omega, c, s, axial, slack, shear, ease, fx, fy, length,
+    alpha,
 ):  # fmt: skip
     """Forces in the elements, and the angular acceleration from shear and stretching."""
     for i in range(fx.shape[0]):
         dx = x1[i] - x0[i]
         dy = y1[i] - y0[i]
-        q = dx * dx + dy * dy
-        r = 1.0 / np.sqrt(q)
-        o = over_edge[i]
-        over_e = edge[i] * r
-        n3 = of(axial, i) * ((dx * c[i] + dy * s[i]) * o - edge[i] * o)
-        ns = of(shear, i) * ((dy * c[i] - dx * s[i]) * o)
-        nx = (n3 * c[i] - ns * s[i]) * over_e
-        ny = (n3 * s[i] + ns * c[i]) * over_e
+        now = np.sqrt(dx * dx + dy * dy)
+        r = 1.0 / now
+        n3 = axial[i] * (dx * c[i] + dy * s[i]) - slack[i]
+        ns = shear[i] * (dy * c[i] - dx * s[i])
+        nx = (n3 * c[i] - ns * s[i]) * r
+        ny = (n3 * s[i] + ns * c[i]) * r
         fx[i] = nx
         fy[i] = ny
-        length[i] = q * r
-        couple = (dx * ny - dy * nx) * (q * r * o)
+        length[i] = now
         rate = (dx * (vx1[i] - vx0[i]) + dy * (vy1[i] - vy0[i])) * (r * r)
-        alpha[i] = couple * (of(over_inertia, i) * o) + omega[i] * rate
+        alpha[i] = (dx * ny - dy * nx) * (now * ease[i]) + omega[i] * rate
 
 
 @kernel
@@ -166,27 +163,22 @@ def drift_pass(x, v, step):
 
 
 @kernel
-def spin_pass(
-    omega, alpha, couple0, couple1, length, over_edge, decay, stretched, over_inertia, kick
-):
+def spin_pass(omega, alpha, couple0, couple1, length, over_edge, ease, decay, stretched, kick):
     """Kick and damp the angular velocities; the damper's power of dilatation as a series."""
     for i in range(omega.shape[0]):
-        e = length[i] * over_edge[i]
-        bending = (couple1[i] - couple0[i]) * (e * over_edge[i] * of(over_inertia, i))
-        a = stretched[i] * (e - 1.0)
+        bending = (couple1[i] - couple0[i]) * (length[i] * ease[i])
+        a = stretched[i] * (length[i] * over_edge[i] - 1.0)
         less = decay[i] * (1.0 - a * (1.0 - a * (0.5 - a * (1.0 / 6.0))))
         omega[i] = (omega[i] + kick * (alpha[i] + bending)) * less
 
 
 @kernel
 def rotate_pass(angle, omega, c, s, step):
-    """Turn each element by step times omega: series for sine and cosine of a small angle."""
+    """Turn each element by step times omega."""
     for i in range(angle.shape[0]):
         d = step * omega[i]
         angle[i] += d
-        q = d * d
-        sine = d * (1.0 - q * (1 / 6) * (1.0 - q * (1 / 20) * (1.0 - q * (1 / 42))))
-        cosine = 1.0 - q * 0.5 * (1.0 - q * (1 / 12) * (1.0 - q * (1 / 30) * (1.0 - q * (1 / 56))))
+        sine, cosine = sine_cosine(d)
         new = c[i] * cosine - s[i] * sine
         s[i] = s[i] * cosine + c[i] * sine
         c[i] = new
@@ -250,16 +242,14 @@ def bond_pass(bonds, state, scratch, rods, stride):
         torque[:] = 0.0
         turn_bonds(bonds, state.angle, torque, stride)
         for i in range(torque.shape[0]):
-            e = scratch.length[i] * rods.over_edge[i]
-            alpha[i] += torque[i] * (e * rods.over_edge[i] * of(rods.over_inertia, i))
+            alpha[i] += torque[i] * (scratch.length[i] * rods.ease[i])
 
 
 @kernel
 def strain_energy(x, y, angle, rods, stride):
     """Elastic energy of the fibres (J): the potential of stretch, and of shear and bending to
     leading order in the stretch, whose factors in PyElastica's equations have none."""
-    bend, half_over_voronoi, edge, over_edge = rods[2:6]
-    axial, shear = rods.axial, rods.shear
+    bend, half_over_voronoi, edge, over_edge, axial, _, shear = rods[2:9]
     length = np.sqrt((x[stride:] - x[:-stride]) ** 2 + (y[stride:] - y[:-stride]) ** 2)
     total = 0.0
     for i in range(angle.shape[0]):
@@ -268,8 +258,8 @@ def strain_energy(x, y, angle, rods, stride):
         along = (dx * c + dy * s) * over_edge[i]
         across = (dy * c - dx * s) * over_edge[i]
         if over_edge[i] > 0.0:
-            total += of(axial, i) * edge[i] * (along - 1.0 - np.log(along))
-            total += 0.5 * of(shear, i) * edge[i] * across * across
+            total += axial[i] * edge[i] * (along - 1.0 - np.log(along))
+            total += 0.5 * shear[i] * edge[i] * across * across
         if bend[i] > 0.0:
             e = (length[i - stride] + length[i]) * half_over_voronoi[i]
             total += 0.5 * bend[i] * (angle[i] - angle[i - stride]) ** 2 / (e * e * e)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import llvmlite.binding as llvm
-from numba import njit, types
-from numba.extending import overload
+from numba import njit
 
 from fiberweb.engines import cache
 
@@ -31,27 +30,3 @@ both = njit(**_HOW, fastmath={"contract"}, forceinline=True)
 uncontracted = njit(**_HOW, fastmath=False, forceinline=True)
 # A kernel with sums in any order, so that they vectorise: still the same order every time.
 summing = njit(**_HOW, **_INSIDE, fastmath={"contract", "reassoc"}, forceinline=True)
-
-
-def of(value, i):
-    """Element i of an array, or a number that is the same for all i."""
-    return value if isinstance(value, float) else value[i]
-
-
-@overload(of, inline="always")
-def _of(value, i):
-    if isinstance(value, types.Float):
-        return lambda value, i: value
-    return lambda value, i: value[i]
-
-
-def part(value, where):
-    """Part of an array, or a number that is the same everywhere."""
-    return value if isinstance(value, float) else value[where]
-
-
-@overload(part, inline="always")
-def _part(value, where):
-    if isinstance(value, types.Float):
-        return lambda value, where: value
-    return lambda value, where: value[where]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fiberweb.engines.jit import kernel, of
+from fiberweb.engines.jit import kernel
 from fiberweb.engines.laplace import REACH
 
 
@@ -30,8 +30,8 @@ def damp_elements(viscosity, state, scratch, rods, s):
         tt[i] = 1.0 / (own - off * tt1[i])
         rate = tx * (vx[up] + bx[up] - vx[i] - bx[i]) + ty * (vy[up] + by[up] - vy[i] - by[i])
         tension[i] = rate - tt1[i] * tension[j]
-        ease = rods.spin_kick * rods.spin_decay[j] * of(rods.over_inertia, j) * rods.over_edge[j]
-        own = rods.spin_kick * rods.spin_decay[i] * of(rods.over_inertia, i) * rods.over_edge[i]
+        ease = rods.spin_kick * rods.spin_decay[j] * rods.ease[j] * rods.edge[j]
+        own = rods.spin_kick * rods.spin_decay[i] * rods.ease[i] * rods.edge[i]
         mm1[i] = -ease * mm[j]
         mm[i] = 1.0 / (turn[i] + own + ease + ease * mm1[i])
         moment[i] = omega[i] + spin[i] - omega[j] - spin[j] - mm1[i] * moment[j]
@@ -44,7 +44,7 @@ def damp_elements(viscosity, state, scratch, rods, s):
     for i in range(low, high):
         vx[i] += decay * kick_x[i] * (fx[i] - fx[i - s])
         vy[i] += decay * kick_y[i] * (fy[i] - fy[i - s])
-        own = rods.spin_kick * rods.spin_decay[i] * of(rods.over_inertia, i) * rods.over_edge[i]
+        own = rods.spin_kick * rods.spin_decay[i] * rods.ease[i] * rods.edge[i]
         omega[i] += own * (moment[i + s] - moment[i])
 
 

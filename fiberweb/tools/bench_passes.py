@@ -34,11 +34,11 @@ PASSES = {
         ("kick and drift y", kirchhoff.kick_pass, 6, (0.99, STEP), 6, 2, 0, 0),
     ],
     "cosserat": [
-        ("stress", cosserat.stress_pass, 17, (1.0, 1.0, 1.0), 13, 4, 1, 1),
+        ("stress", cosserat.stress_pass, 19, (), 15, 4, 1, 1),
         ("couple", cosserat.couple_pass, 7, (), 6, 1, 0, 1),
         ("kick x", cosserat.velocity_pass, 5, (0.99,), 5, 1, 0, 0),
         ("kick y", cosserat.velocity_pass, 5, (0.99,), 5, 1, 0, 0),
-        ("spin", cosserat.spin_pass, 8, (1.0, STEP), 8, 1, 0, 0),
+        ("spin", cosserat.spin_pass, 9, (STEP,), 9, 1, 0, 0),
         ("drift x", cosserat.drift_pass, 2, (STEP,), 2, 1, 0, 0),
         ("drift y", cosserat.drift_pass, 2, (STEP,), 2, 1, 0, 0),
         ("rotate", cosserat.rotate_pass, 4, (STEP,), 4, 3, 0, 0),
