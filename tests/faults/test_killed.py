@@ -1,7 +1,9 @@
-"""A job, Snakemake, or all of them killed; Ctrl-C; two calls at once."""
+"""What is killed, Ctrl-C, two calls at once, and others that take the cores."""
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import psutil
@@ -68,6 +70,19 @@ def test_two_calls_at_once(fresh, expected):
     assert f"`snakemake {' '.join(TARGET)}` is at work" in refused and str(call.pid) in refused
     job.resume()
     assert call.wait() == 0, fresh.printed()
+    assert fresh.made() == expected
+
+
+def test_beside_others_that_take_all_cores(fresh, expected):
+    hungry = [sys.executable, "-c", "while True: pass"]
+    others = [subprocess.Popen(hungry) for _ in range(2 * os.cpu_count())]
+    try:
+        fresh.run()
+        assert all(other.poll() is None for other in others)
+    finally:
+        for other in others:
+            other.kill()
+            other.wait()
     assert fresh.made() == expected
 
 

@@ -62,7 +62,7 @@ def _seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict) -> None:
     _mean_of_seeds(ax, rows, name, colour, len(listed))
     ax.axvline(len(listed) - 0.5, color=style.FAINT, lw=0.6)
     ax.set_xticks(range(len(listed) + 1), [*map(str, listed), "mean"])
-    ax.set(xlabel="Seed", xlim=(-0.5, len(listed) + 2.0))
+    ax.set(xlabel="Seed", xlim=(-0.5, len(listed) + 2.6))
 
 
 def _mean_of_seeds(ax: Axes, rows: pd.DataFrame, name: str, colour: dict, place: int) -> None:
