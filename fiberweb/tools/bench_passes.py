@@ -13,9 +13,9 @@ from functools import cache
 import numpy as np
 from numba import njit
 
+from fiberweb.engines import authors_rotations, laplace
 from fiberweb.engines import cosserat_passes as cosserat
 from fiberweb.engines import kirchhoff_passes as kirchhoff
-from fiberweb.engines import laplace
 from fiberweb.engines.jit import kernel
 from fiberweb.engines.layout import packed
 
@@ -42,6 +42,10 @@ PASSES = {
         ("drift x", cosserat.drift_pass, 2, (STEP,), 2, 1, 0, 0),
         ("drift y", cosserat.drift_pass, 2, (STEP,), 2, 1, 0, 0),
         ("rotate", cosserat.rotate_pass, 4, (STEP,), 4, 3, 0, 0),
+    ],
+    "the authors' rotations instead": [
+        ("couple", authors_rotations.couple_pass, 9, (), 8, 1, 0, 1),
+        ("rotate", authors_rotations.rotate_pass, 4, (STEP,), 4, 3, 0, 0),
     ],
     "Laplace filter, of x, y and angle": [
         ("difference", laplace.difference_pass, 5, (), 4, 1, 0, 0),
