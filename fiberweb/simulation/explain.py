@@ -50,7 +50,8 @@ def describe(plan: Plan) -> str:
         f"left out: {_left_out(plan)}",
         f"step: {1e6 * step:.3g} us, {_against(step, plan.limit, scene)}",
         f"damping: {_damping(scene, step)}",
-        f"cost: {steps:.3g} steps x {elements} elements, about {_duration(seconds)}",
+        f"cost: {steps:.3g} steps x {elements} elements, "
+        f"about {_duration(seconds)} of a fast core, up to three times that of a slow one",
     ]
     return "\n".join(lines + [f"beware: {text}" for text in _warnings(scene)])
 
@@ -125,9 +126,9 @@ def _damping(scene: Scene, step: float) -> str:
 
 def _duration(seconds: float) -> str:
     if seconds < 120:
-        return f"{seconds:.2g} s of one core"
+        return f"{seconds:.2g} s"
     hours = seconds / 3600
-    return f"{hours:.2g} hours of one core" if hours > 1 else f"{seconds / 60:.0f} min of one core"
+    return f"{hours:.2g} hours" if hours > 1 else f"{seconds / 60:.0f} min"
 
 
 def _warnings(scene: Scene) -> list[str]:

@@ -69,7 +69,7 @@ def compared(request, tmp_path_factory):
     )
     fresh = {"NUMBA_CACHE_DIR": str(tmp_path_factory.mktemp("numba")), "PYTHONPATH": "."}
     done = subprocess.run(
-        [sys.executable, "-c", COMPARE, arguments], check=True, capture_output=True, text=True,
+        [sys.executable, "-c", COMPARE, arguments], check=True, stdout=subprocess.PIPE, text=True,
         env=os.environ | fresh,
     )  # fmt: skip
     return request.param, json.loads(done.stdout.splitlines()[-1])
