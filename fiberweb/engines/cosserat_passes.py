@@ -10,6 +10,7 @@ from fiberweb.engines.energy import (
     enter_sample,
     joint_energy,
     joint_power,
+    keep,
     pull_work,
     squared_speed,
 )
@@ -319,8 +320,7 @@ def add_filter_power(lost, before, kicked, state, spin, ledger, step):
 @kernel
 def copy_velocities(state, kept):
     """Keep the velocities of this moment."""
-    copy(state.vx, kept.vx)
-    copy(state.vy, kept.vy)
+    keep(state.vx, state.vy, kept.vx, kept.vy)
     copy(state.omega, kept.omega)
 
 

@@ -16,7 +16,8 @@ llvm.set_option("", "-runtime-memory-check-threshold=500")
 # Division by zero gives inf, as in numpy: a test in the loop would keep it scalar. Contraction
 # allows fused multiply-add and nothing else, so results repeat to the bit.
 _HOW = {"cache": True, "error_model": "numpy", "nogil": True}
-# What no Python calls needs none of the code around it, which takes longer to compile.
+# What no Python calls needs none of the code around it, which takes longer to compile. Called from
+# Python all the same, also by `py_func` of another, it ends the process: use `both` there.
 _INSIDE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 # What Python calls: the loop over steps.
 entry = njit(**_HOW, fastmath={"contract"})
