@@ -119,6 +119,7 @@ def _histogram(part: SubFigure, table: pd.DataFrame) -> None:
                   label=label, lw=1.0)  # fmt: skip
     ax.set(xscale="log", xlabel="Angle between elements (rad)", ylabel="Share of nodes and looks")
     ax.set_xlim(1e-8, 1e-1)
+    ax.set_ylim(0.0, 1.3 * ax.dataLim.y1)  # the key stands above the curves
     ax.set_xticks([1e-8, 1e-6, 1e-4, 1e-2])
     ax.minorticks_off()
     ax.legend(loc="upper left", fontsize=6, handlelength=1.0)
