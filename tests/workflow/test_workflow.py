@@ -19,7 +19,7 @@ from fiberweb.runs import runs
 from fiberweb.simulation import dataset
 from fiberweb.studies.ridge.best import best_unbuckled, read_best
 from fiberweb.tools.status import status
-from tests.workflow.conftest import ROOT, SMOKE
+from tests.workflow.conftest import ROOT, SMOKE, Tree
 
 FINISH = {"table": 4, "figure": 1}
 STUDIES = [name for name in studies.STUDIES if studies.setups(name)]
@@ -335,22 +335,23 @@ def test_the_same_bytes_again(smoked):
 
 
 @pytest.mark.slow
-def test_the_second_setup_leaves_the_first_alone(smoked):
-    """Last: it adds to what the tests above look at."""
-    (smoked.folder / "small.yaml").write_text(f"results: out\n{SMALL}")
+def test_the_second_setup_leaves_the_first_alone(smoked, tmp_path):
+    own = Tree(tmp_path)  # other tests look at the tables that it writes anew
+    shutil.copytree(smoked.folder, own.folder, dirs_exist_ok=True)
+    (own.folder / "small.yaml").write_text(f"results: out\n{SMALL}")
     small = ("--configfile", "small.yaml")
-    smoked.snakemake("topology", *small)
-    table = smoked.folder / "out" / "tables" / "described" / "topology.csv"
+    own.snakemake("topology", *small)
+    table = own.folder / "out" / "tables" / "described" / "topology.csv"
     before = table.read_bytes()
     studies = ("topology", "ridge", "size", "pretension", "features", "capacity_origin")
     drawn = [f"out/figures/{study}-published.png" for study in studies]
-    smoked.snakemake(*drawn, *small)
-    assert smoked.jobs(*drawn, "topology", "--dry-run", *small) == {}
+    own.snakemake(*drawn, *small)
+    assert own.jobs(*drawn, "topology", "--dry-run", *small) == {}
     assert table.read_bytes() == before
     published = table.parents[1] / "published"
     assert set(pd.read_csv(published / "topology.csv")["setup"]) == {"published"}
     for figure in drawn:
-        assert np.ptp(mpl.image.imread(smoked.folder / figure)) > 0.5
+        assert np.ptp(mpl.image.imread(own.folder / figure)) > 0.5
 
 
 def test_neither_a_matplotlibrc_nor_a_notebooks_backend_changes_a_picture(
