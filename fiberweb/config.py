@@ -54,7 +54,7 @@ class General(Section):
     certify: bool = key(
         False,
         "run each network of Fig. 1 again with step, mesh, engine, start and the authors' numerics "
-        "changed one at a time, to mark what is not physics; takes five times as long",
+        "changed one at a time, to mark what is not physics; takes up to six times as long",
     )
     scene: SceneSection = SceneSection()
     setups: SetupsSection = SetupsSection()

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from fiberweb.engines import load
 from fiberweb.model.scene import Scene
-from fiberweb.simulation.plan import ACCURACIES, Plan, plan, safety
+from fiberweb.simulation.plan import ACCURACIES, Plan, nanoseconds, plan, safety
 
 # Shear and rotary inertia left out change trajectories by this much at so many diameters of
 # spacing, and by less as the inverse square. Source: model_ladder.csv.
 SHEAR, SHEAR_AT = 2.3e-3, 50.0
-CHAOS = 1.5  # buckling number above which perturbed pairs part; source: chaos_rates.csv
+CHAOS = 2.0  # buckling number above which perturbed pairs part; source: chaos_rates.csv
 PLANE = 0.5  # buckling number above which a push turns fibres out; source: out_of_plane.csv
 STUBBY = 10.0  # spacing in diameters below which shear costs over 0.05; source: as for SHEAR
 # Share of EA above which a force strains a fibre more than a beam can be: there networks were torn
@@ -43,7 +43,7 @@ def describe(plan: Plan) -> str:
     per_sample = steps_per_sample(scene, plan.numerics.time_step)
     step = 1.0 / (scene.sample_rate * per_sample)
     steps = per_sample * (scene.samples - 1)
-    seconds = 1e-9 * load(plan.engine).NANOSECONDS * steps * elements
+    seconds = 1e-9 * nanoseconds(scene, plan.engine) * steps * elements
     lines = [
         f"choice: {_choice(plan)}",
         f"error: {_error(plan)}",

@@ -2,7 +2,8 @@
 runs, by the config of the paper.
 
 Of the simulations alone: their kernels are nearly all of what a target takes. Where the forces of a
-study are those that the ridge finds best, as many of those that it may find are counted.
+study are those that the ridge finds best, as many of those that it may find are counted, another one
+for C_nl than for C_m.
 """
 
 from __future__ import annotations
@@ -15,15 +16,20 @@ from fiberweb import studies
 from fiberweb.config import Config, lab, load
 from fiberweb.model.scene import SETUPS
 from fiberweb.runs import Run, runs
+from fiberweb.studies.base import CHOICES
 
 CONFIG = Path(__file__).parents[2] / "config" / "config.yaml"
 TARGETS = {"described": "figures", "published": "published", "compliant": "compliant"}
 
 
 def wanted(config: Config, study: str, setup: str) -> list[Run]:
-    """The runs of a study in a setup, with one of the forces that the ridge may find best."""
-    forces = lab(config, setup).map.best
-    return runs(config, study, setup, {key: found[-1] for key, found in forces.items() if found})
+    """The runs of a study in a setup, with forces that the ridge may find best."""
+    best = {
+        (choice, spacing): found[max(-1 - CHOICES.index(choice), -len(found))]
+        for (choice, spacing), found in lab(config, setup).map.best.items()
+        if found
+    }
+    return runs(config, study, setup, best)
 
 
 def hours() -> pd.DataFrame:
