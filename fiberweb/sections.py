@@ -228,8 +228,8 @@ class ExperimentSection(Section):
     )  # fmt: skip
     element: Positive = key(
         0.04, "longest element of the mesh: 4 a section of a 4x4, 2 of a 6x6. At 50 degrees C_nl "
-        "is 0.84, 0.89, 0.82 with 2, 4, 8 in the 4x4, whose slack sections buckle, and 0.94 with 2 "
-        "or 4 in the 6x6", "m",
+        "is 0.84, 0.89, 0.82, 0.80 with 2, 4, 8, 16 in the 4x4, whose slack sections buckle, and "
+        "0.94 with 2 or 4 in the 6x6", "m",
     )  # fmt: skip
     pixels_per_mm: Positive = key(2.0, "scale of the film: the scripts' crop has 0.5 mm a pixel")
     marker_noise: NotNegative = key(

@@ -16,42 +16,73 @@ CLIPPED = 0.01  # share of frames at an extreme
 LEVELS = 20  # an input of fewer distinct values is one of steps, and no clipped one
 LONGEST = 200_000  # frames that the lag is looked for in
 LAG = 1.0  # s, the longest lag that is looked for
+UNRELATED = 0.1  # correlation of input and markers below which there is no lag to tell
 SHOWN = 5  # of a kind of finding, before they are only counted
 
 
-def exchanges(positions: np.ndarray, names: list[str], rate: float) -> list[Finding]:
-    """Markers that take each other's place from one frame to the next, changed back in place.
+def exchanges(positions: np.ndarray, names: list[str], time: np.ndarray) -> list[Finding]:
+    """Markers that take each other's place, from one frame to the next or while they were not seen,
+    changed back in place.
 
-    A pair is taken for exchanged where both jump at once, and each lands no further from where the
-    other was than an ordinary step. positions: (T, m, 2); rate: Hz.
+    A pair is taken for exchanged where both jump, and each lands no further from where the other
+    was than ordinary steps, and far closer there than to where it was itself. positions: (T, m, 2),
+    NaN where a marker is not seen; time: (T,), s.
     """
     found, jumped = [], {}
-    limits = np.empty(len(names))
+    limits = np.zeros(len(names))
     for number in range(len(names)):
-        steps = np.hypot(*np.diff(positions[:, number], axis=0).T)
-        limits[number] = np.quantile(steps, 0.99) if len(steps) else 0.0
-        for frame in np.flatnonzero(steps > JUMP * limits[number])[:1000] + 1:
+        seen = np.flatnonzero(np.isfinite(positions[:, number]).all(axis=1))
+        steps = np.hypot(*np.diff(positions[seen, number], axis=0).T)
+        if len(steps):
+            limits[number] = np.quantile(steps, 0.99)
+        for frame in seen[1:][steps > JUMP * limits[number]][:1000]:
             jumped.setdefault(int(frame), []).append(number)
+    jumping = {number for numbers in jumped.values() for number in numbers}
+    unclear = []
     for frame in sorted(jumped):
-        left = list(jumped[frame])
-        while len(left) > 1:
+        left, alone = list(jumped[frame]), 0
+        while left:
             a = left.pop(0)
-            for b in left:
-                reach = 2.0 * max(limits[a], limits[b])
-                to_b = np.hypot(*(positions[frame, a] - positions[frame - 1, b]))
-                to_a = np.hypot(*(positions[frame, b] - positions[frame - 1, a]))
-                if max(to_a, to_b) <= reach:
+            for b in jumping - {a}:
+                if _changed(positions, frame, a, b, max(limits[a], limits[b])):
                     positions[frame:, [a, b]] = positions[frame:, [b, a]]
-                    found.append(
-                        Finding(
-                            "exchanged", "repair",
-                            f"markers {names[a]!r} and {names[b]!r} change places at "
-                            f"{frame / rate:.4g} s and were changed back",
-                        )
-                    )  # fmt: skip
-                    left.remove(b)
+                    sentence = (
+                        f"markers {names[a]!r} and {names[b]!r} change places at "
+                        f"{time[frame]:.4g} s and were changed back"
+                    )
+                    found.append(Finding("exchanged", "repair", sentence))
+                    left = [number for number in left if number != b]
                     break
-    return found or [Finding("exchanged", "ok", "no two markers change places")]
+            else:
+                alone += 1
+        if alone > 2:
+            unclear.append(f"{alone} markers jump at once at {time[frame]:.4g} s")
+    if unclear:
+        sentence = f"{unclear[0]}, where names may be exchanged, and were left as they are"
+        more = f" (and at {len(unclear) - 1} other times)" if len(unclear) > 1 else ""
+        found.append(Finding("exchanged", "warning", sentence + more))
+    return found or [Finding("exchanged", "ok", "no two markers were seen to change places")]
+
+
+def _changed(positions: np.ndarray, frame: int, a: int, b: int, step: float) -> bool:
+    """Whether a, seen at a frame, and b, from when it is next seen, are where the other was."""
+    (before_a, was_a), (before_b, was_b) = (_nearest(positions[:frame, n], -1) for n in (a, b))
+    after_b, is_b = _nearest(positions[frame:, b], 1)
+    if was_a is None or was_b is None or is_b is None:
+        return False
+    is_a = positions[frame, a]
+    hidden = max(frame - before_a, frame - before_b) + after_b
+    crossed = max(np.hypot(*(is_a - was_b)), np.hypot(*(is_b - was_a)))
+    stayed = min(np.hypot(*(is_a - was_a)), np.hypot(*(is_b - was_b)))
+    return crossed <= min(2.0 * step * hidden, stayed / 2.0)
+
+
+def _nearest(values: np.ndarray, direction: int) -> tuple[int, np.ndarray | None]:
+    """The frame nearest to the end (-1) or the beginning (1) where a marker is seen, and its place
+    there; values: (n, 2)."""
+    frames = range(len(values))[::direction]
+    at = next((frame for frame in frames if np.isfinite(values[frame]).all()), None)
+    return (0, None) if at is None else (at, values[at].copy())
 
 
 def look(moved: np.ndarray, u: np.ndarray, names: list[str], rate: float) -> list[Finding]:
@@ -138,7 +169,7 @@ def _lag(moved, u, rate) -> Finding:
     """How far the markers follow the input, where their cross-correlation is greatest."""
     u = u[-LONGEST:]
     reach = min(round(LAG * rate), len(u) // 4)
-    total = np.zeros(2 * reach + 1)
+    total, counted = np.zeros(2 * reach + 1), 0
     drive = signal.detrend(u)
     for number in range(moved.shape[1]):
         for axis in range(2):
@@ -147,6 +178,11 @@ def _lag(moved, u, rate) -> Finding:
                 continue
             across = signal.correlate(motion, drive, "full", "fft") / spread
             total += across[len(u) - 1 - reach : len(u) + reach] ** 2
+            counted += 1
+    correlation = np.sqrt(total.max() / max(counted, 1))
+    if correlation < UNRELATED:
+        sentence = f"input and markers correlate by {correlation:.2g} at most: no lag to tell"
+        return Finding("lag", "ok", sentence)
     lag = int(np.argmax(total)) - reach
     sentence = (
         f"the markers follow the input by {lag} frames ({1e3 * lag / rate:.3g} ms), where their "

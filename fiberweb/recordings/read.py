@@ -68,8 +68,9 @@ def _read(path: Path, quiet: bool, options: dict) -> xr.Dataset:
             f"{path}, column {column!r}: the input is {np.nanmin(raw.input):g} in every frame "
             f"({raw.place(0)} on); name an input that varies"
         )
+    found += checks.exchanges(raw.positions, raw.names, time)  # before gaps are filled across them
     time, positions, u, more = clock.even(raw, time, rate, chosen, path)
-    found += more + checks.exchanges(positions, raw.names, rate)
+    found += more
     units = chosen.units or raw.units or "px"
     rest = positions[0].copy()
     positions -= rest

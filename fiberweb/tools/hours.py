@@ -2,8 +2,8 @@
 runs, by the config of the paper.
 
 Of the simulations alone: their kernels are nearly all of what a target takes. Where the forces of a
-study are those that the ridge finds best, as many of those that it may find are counted, another one
-for C_nl than for C_m.
+study are those that the ridge finds best, as many of those that it may find are counted, and not
+the same for C_nl and for C_m.
 """
 
 from __future__ import annotations

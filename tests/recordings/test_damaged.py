@@ -186,6 +186,35 @@ def test_markers_exchanged_midway_are_changed_back(tmp_path, made):
     assert "'a' and 'c' change places at 3 s" in " ".join(sanity(response)["sentence"])
 
 
+def test_markers_exchanged_while_they_are_not_seen_are_changed_back(tmp_path, made):
+    time, u, positions = made
+    wrong = positions.copy()
+    wrong[150:, [0, 2]] = wrong[150:, [2, 0]]
+    wrong[148:151, 0] = wrong[148:150, 2] = np.nan  # seen again one after the other
+    response = read_recording(files.wide(tmp_path / "a.csv", time, u, wrong), quiet=True)
+    off = np.abs(response["displacement"].values - (positions - positions[0]))
+    ordinary = np.abs(np.diff(positions, axis=0)).max()
+    assert off.max() < 2 * ordinary  # of the line across the gap
+    assert not np.delete(off, [148, 149, 150], axis=0).max() > 1e-9
+
+
+def test_names_that_go_round_are_warned_of(tmp_path, made):
+    time, u, positions = made
+    wrong = positions.copy()
+    wrong[150:, [0, 1, 2]] = wrong[150:, [1, 2, 0]]
+    found = sanity(read_recording(files.wide(tmp_path / "a.csv", time, u, wrong), quiet=True))
+    said = found.set_index("name").loc["exchanged"]
+    assert said["severity"] == "warning"
+    assert "3 markers jump at once at 3 s" in said["sentence"]
+
+
+def test_noise_follows_nothing(tmp_path):
+    time, u, positions = body(seed=1)
+    noise = np.random.default_rng(2).normal(size=positions.shape)
+    found = sanity(read_recording(files.wide(tmp_path / "a.csv", time, u, noise), quiet=True))
+    assert "no lag to tell" in found.set_index("name").loc["lag"]["sentence"]
+
+
 @pytest.fixture
 def mat(tmp_path, made):
     _, u, positions = made
