@@ -17,6 +17,7 @@ LEVELS = 20  # an input of fewer distinct values is one of steps, and no clipped
 LONGEST = 200_000  # frames that the lag is looked for in
 LAG = 1.0  # s, the longest lag that is looked for
 UNRELATED = 0.1  # correlation of input and markers below which there is no lag to tell
+HIDDEN = 100  # frames, for no longer than which markers may exchange their names unseen
 SHOWN = 5  # of a kind of finding, before they are only counted
 
 
@@ -37,13 +38,13 @@ def exchanges(positions: np.ndarray, names: list[str], time: np.ndarray) -> list
             limits[number] = np.quantile(steps, 0.99)
         for frame in seen[1:][steps > JUMP * limits[number]][:1000]:
             jumped.setdefault(int(frame), []).append(number)
-    jumping = {number for numbers in jumped.values() for number in numbers}
     unclear = []
     for frame in sorted(jumped):
+        hidden = np.flatnonzero(np.isnan(positions[frame, :, 0])).tolist()
         left, alone = list(jumped[frame]), 0
         while left:
             a = left.pop(0)
-            for b in jumping - {a}:
+            for b in left + hidden:
                 if _changed(positions, frame, a, b, max(limits[a], limits[b])):
                     positions[frame:, [a, b]] = positions[frame:, [b, a]]
                     sentence = (
@@ -66,23 +67,21 @@ def exchanges(positions: np.ndarray, names: list[str], time: np.ndarray) -> list
 
 def _changed(positions: np.ndarray, frame: int, a: int, b: int, step: float) -> bool:
     """Whether a, seen at a frame, and b, from when it is next seen, are where the other was."""
-    (before_a, was_a), (before_b, was_b) = (_nearest(positions[:frame, n], -1) for n in (a, b))
-    after_b, is_b = _nearest(positions[frame:, b], 1)
-    if was_a is None or was_b is None or is_b is None:
-        return False
+    before = positions[max(frame - HIDDEN, 0) : frame][::-1]
+    (gap_a, was_a), (gap_b, was_b) = (_first(before[:, number]) for number in (a, b))
+    after, is_b = _first(positions[frame : frame + HIDDEN, b])
     is_a = positions[frame, a]
-    hidden = max(frame - before_a, frame - before_b) + after_b
+    hidden = 1 + max(gap_a, gap_b) + after
     crossed = max(np.hypot(*(is_a - was_b)), np.hypot(*(is_b - was_a)))
     stayed = min(np.hypot(*(is_a - was_a)), np.hypot(*(is_b - was_b)))
     return crossed <= min(2.0 * step * hidden, stayed / 2.0)
 
 
-def _nearest(values: np.ndarray, direction: int) -> tuple[int, np.ndarray | None]:
-    """The frame nearest to the end (-1) or the beginning (1) where a marker is seen, and its place
-    there; values: (n, 2)."""
-    frames = range(len(values))[::direction]
-    at = next((frame for frame in frames if np.isfinite(values[frame]).all()), None)
-    return (0, None) if at is None else (at, values[at].copy())
+def _first(values: np.ndarray) -> tuple[int, np.ndarray]:
+    """The first frame in which a marker is seen, and its place there, NaN if it is in none; values:
+    (n, 2)."""
+    at = int(np.argmax(np.isfinite(values).all(axis=1)))
+    return at, values[at]
 
 
 def look(moved: np.ndarray, u: np.ndarray, names: list[str], rate: float) -> list[Finding]:
