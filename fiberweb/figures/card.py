@@ -51,6 +51,7 @@ def draw(card: Mapping, path: str | Path) -> Figure:
             figure.text(0.01, 0.9, said[0], va="top")
             style.save(figure, path)
             return figure
+        said.append(fill(_about(card["facts"]), WIDTH + 10))
         defined = fill(DEFINED, WIDTH + 14)
         above, below = _height(said), _height([defined])
         figure = style.figure(style.DOUBLE, above + 104.0 + below)
@@ -78,6 +79,18 @@ def draw(card: Mapping, path: str | Path) -> Figure:
         _table(middle.subplots(), scores)
         style.save(figure, path)
     return figure
+
+
+def _about(facts: Mapping) -> str:
+    """What was scored, and how."""
+    recipe = f"recipe {facts['recipe']}, " if facts["recipe"] else ""
+    return (
+        f"{facts['run']}: {facts['frames']} frames at {facts['rate_Hz']:.4g} Hz, trained on "
+        f"{facts['trained_s']:.3g} s, tested on {facts['tested_s']:.3g} s; {recipe}ridge penalty "
+        f"{facts['alpha']}; delay line of {facts['taps']} taps, {facts['taps_s']:.2g} s; "
+        f"processing capacity of {facts['functions']} functions, "
+        f"{facts['delay_step_s']:.2g} s between delays"
+    )
 
 
 def _height(texts: list[str]) -> float:

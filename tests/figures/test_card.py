@@ -7,6 +7,11 @@ import pytest
 from fiberweb.figures import card, style
 from tests.figures.legible import assert_legible, assert_written, said
 
+FACTS = {
+    "run": "film", "frames": 3000, "rate_Hz": 60.0, "trained_s": 35.0, "tested_s": 12.5,
+    "horizon_s": 1.0, "taps": 12, "taps_s": 0.2, "delay_step_s": 0.067, "functions": 41,
+    "alpha": 0.01, "recipe": "phresco", "bar": 0.2,
+}  # fmt: skip
 COUNTS = [*card.COUNTS, "c_nl", "c_m", "ipc", "ipc_1", "ipc_2", "ipc_3"]
 
 
@@ -25,7 +30,7 @@ def made(tasks=(2, 5, 10), **facts):
         "verdict": "The body computes nothing that its input, the powers and derivatives of it, or "
         "a delay line of 12 taps (400 ms) does not compute as well.",
         "notes": ["A note that is long enough to be a sentence, and says what it says."] * 4,
-        "facts": {"bar": 0.2, "horizon_s": 1.0} | facts,
+        "facts": FACTS | facts,
         "scores": rows, "profile": profile.to_dict("records"),
     }  # fmt: skip
 
@@ -37,7 +42,8 @@ def test_a_card_is_legible_and_defines_its_errors(given, unsaved):
     figure = card.draw(given, "card.png")
     assert_legible(figure)
     text = " ".join(said(figure).split())
-    for words in (given["verdict"], "NMSE = NRMSE²", "kernel rank", "effective rank"):
+    about = "film: 3000 frames at 60 Hz, trained on 35 s, tested on 12.5 s; recipe phresco"
+    for words in (given["verdict"], about, "NMSE = NRMSE²", "kernel rank", "effective rank"):
         assert words in text
 
 
