@@ -29,33 +29,24 @@ def exchanges(positions: np.ndarray, names: list[str], time: np.ndarray) -> list
     was than ordinary steps, and far closer there than to where it was itself. positions: (T, m, 2),
     NaN where a marker is not seen; time: (T,), s.
     """
-    found, jumped = [], {}
-    limits = np.zeros(len(names))
-    for number in range(len(names)):
-        seen = np.flatnonzero(np.isfinite(positions[:, number]).all(axis=1))
-        steps = np.hypot(*np.diff(positions[seen, number], axis=0).T)
-        if len(steps):
-            limits[number] = np.quantile(steps, 0.99)
-        for frame in seen[1:][steps > JUMP * limits[number]][:1000]:
-            jumped.setdefault(int(frame), []).append(number)
-    unclear = []
+    limits, jumped = _jumping(positions)
+    found, unclear = [], []
     for frame in sorted(jumped):
         hidden = np.flatnonzero(np.isnan(positions[frame, :, 0])).tolist()
         left, alone = list(jumped[frame]), 0
         while left:
             a = left.pop(0)
-            for b in left + hidden:
-                if _changed(positions, frame, a, b, max(limits[a], limits[b])):
-                    positions[frame:, [a, b]] = positions[frame:, [b, a]]
-                    sentence = (
-                        f"markers {names[a]!r} and {names[b]!r} change places at "
-                        f"{time[frame]:.4g} s and were changed back"
-                    )
-                    found.append(Finding("exchanged", "repair", sentence))
-                    left = [number for number in left if number != b]
-                    break
-            else:
+            of_a = (b for b in left + hidden if _changed(positions, frame, a, b, limits))
+            if (b := next(of_a, None)) is None:
                 alone += 1
+                continue
+            positions[frame:, [a, b]] = positions[frame:, [b, a]]
+            left = [number for number in left if number != b]
+            sentence = (
+                f"markers {names[a]!r} and {names[b]!r} change places at {time[frame]:.4g} s and "
+                "were changed back"
+            )
+            found.append(Finding("exchanged", "repair", sentence))
         if alone > 2:
             unclear.append(f"{alone} markers jump at once at {time[frame]:.4g} s")
     if unclear:
@@ -65,7 +56,20 @@ def exchanges(positions: np.ndarray, names: list[str], time: np.ndarray) -> list
     return found or [Finding("exchanged", "ok", "no two markers were seen to change places")]
 
 
-def _changed(positions: np.ndarray, frame: int, a: int, b: int, step: float) -> bool:
+def _jumping(positions: np.ndarray) -> tuple[np.ndarray, dict[int, list[int]]]:
+    """The larger steps of each marker, (m,), and the markers that jump in a frame, by frame."""
+    limits, jumped = np.zeros(positions.shape[1]), {}
+    for number in range(len(limits)):
+        seen = np.flatnonzero(np.isfinite(positions[:, number]).all(axis=1))
+        steps = np.hypot(*np.diff(positions[seen, number], axis=0).T)
+        if len(steps):
+            limits[number] = np.quantile(steps, 0.99)
+        for frame in seen[1:][steps > JUMP * limits[number]][:1000]:
+            jumped.setdefault(int(frame), []).append(number)
+    return limits, jumped
+
+
+def _changed(positions: np.ndarray, frame: int, a: int, b: int, limits: np.ndarray) -> bool:
     """Whether a, seen at a frame, and b, from when it is next seen, are where the other was."""
     before = positions[max(frame - HIDDEN, 0) : frame][::-1]
     (gap_a, was_a), (gap_b, was_b) = (_first(before[:, number]) for number in (a, b))
@@ -74,7 +78,7 @@ def _changed(positions: np.ndarray, frame: int, a: int, b: int, step: float) -> 
     hidden = 1 + max(gap_a, gap_b) + after
     crossed = max(np.hypot(*(is_a - was_b)), np.hypot(*(is_b - was_a)))
     stayed = min(np.hypot(*(is_a - was_a)), np.hypot(*(is_b - was_b)))
-    return crossed <= min(2.0 * step * hidden, stayed / 2.0)
+    return crossed <= min(2.0 * max(limits[a], limits[b]) * hidden, stayed / 2.0)
 
 
 def _first(values: np.ndarray) -> tuple[int, np.ndarray]:
