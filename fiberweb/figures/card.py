@@ -169,30 +169,29 @@ def _tasks(ax: Axes, scores: pd.DataFrame, facts: Mapping) -> None:
 
 
 def _table(ax: Axes, scores: pd.DataFrame) -> None:
-    """Counts and errors, a column for each readout."""
-    quantities = dict(COUNTS)
-    for name in scores.index.unique("quantity"):
-        task, _, error = name.rpartition("_")
-        if error in ERRORS:
-            quantities[name] = f"NARMA-{task.removeprefix('narma')} {error.upper()}"
-    rows = [
-        [label, *(_number(scores.loc[(name, readout), "value"]) for readout in READOUTS)]
-        for name, label in quantities.items()
-    ]
-    half = -(-len(rows) // 2)
-    for at, row in enumerate(rows):
-        side, line = divmod(at, half)
-        if line == 0:
-            _line(ax, side, 0, half, ["", *SHORT])
-        _line(ax, side, line + 1, half, row)
+    """Capacities and counts on the left, errors on the right, a column for each readout."""
+    errors = {
+        f"{task}_{error}": f"NARMA-{task.removeprefix('narma')} {error.upper()}"
+        for task, _, error in (name.rpartition("_") for name in scores.index.unique("quantity"))
+        if error in ERRORS
+    }
+    sides = plots.TOTALS | {"ipc": "processing"} | COUNTS, errors
+    lines = 1 + max(map(len, sides))
+    for side, quantities in enumerate(sides):
+        rows = [["", *SHORT]] + [
+            [label, *(_number(scores.loc[(name, readout), "value"]) for readout in READOUTS)]
+            for name, label in quantities.items()
+        ]
+        for line, row in enumerate(rows):
+            _line(ax, side, (line + 0.5) / lines, row)
     ax.set_axis_off()
 
 
-def _line(ax: Axes, side: int, line: int, half: int, cells: list[str]) -> None:
+def _line(ax: Axes, side: int, down: float, cells: list[str]) -> None:
     """A line of the table, in its left or right half: a name, then a number for each readout."""
     ends = 0.5 * side + 0.16 + 0.064 * np.arange(len(cells))
     for end, cell in zip(ends, cells, strict=True):
-        ax.text(end, 1.0 - (line + 0.5) / (half + 1), cell, ha="right", va="center", fontsize=6.5)
+        ax.text(end, 1.0 - down, cell, ha="right", va="center", fontsize=6.5)
 
 
 def _number(value: float) -> str:

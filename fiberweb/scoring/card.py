@@ -70,7 +70,7 @@ FACTS = {
     "rate_Hz": ("of these frames", "Hz"),
     "trained_s": ("length of the training part", "s"),
     "tested_s": ("length of the test part", "s"),
-    "blocks": "in the test part, that intervals are redrawn from",
+    "blocks": "that the test part holds whole; intervals are redrawn from these and the rest",
     "horizon_s": ("longest delay, and length of a block", "s"),
     "taps": "of the delay line",
     "taps_s": ("length of the delay line", "s"),
@@ -157,8 +157,15 @@ def card(response: xr.Dataset, **options) -> Card:
     u, x, rate, cut = _arrays(response, chosen.rate)
     u, x = checked(u, x, rate, Options(split=chosen.split, horizon=chosen.horizon))
     horizon = round(chosen.horizon * rate)
-    start = max(int(chosen.washout * len(u)), horizon, (chosen.taps or 1) - 1)
+    start = max(int(chosen.washout * len(u)), horizon)
     check_frames(len(u) - start + horizon, rate, chosen.horizon, chosen.split)
+    if chosen.taps and chosen.taps > start + 1:
+        start = chosen.taps - 1
+        if (most := len(u) - horizon) < chosen.taps:
+            raise ValueError(
+                f"taps = {chosen.taps} leave {max(0, len(u) - start)} of {len(u)} frames with all "
+                f"of them in the recording; give at most {most}"
+            )
     fitted = slice(start, training_end(start, len(u), chosen.split))
     for part, where in {"training": fitted, "test": slice(fitted.stop, None)}.items():
         if not np.ptp(u[where]):
@@ -191,7 +198,7 @@ def card(response: xr.Dataset, **options) -> Card:
     facts = {
         "run": response.attrs.get("run", ""), "frames": len(u), "rate_Hz": rate,
         "trained_s": (fitted.stop - start) / rate, "tested_s": tested / rate,
-        "blocks": -(-tested // horizon), "horizon_s": chosen.horizon, "taps": int(taps),
+        "blocks": tested // horizon, "horizon_s": chosen.horizon, "taps": int(taps),
         "taps_s": taps / rate, "delay_step_s": step / rate, "functions": len(functions.degree),
         "amplitude": chosen.amplitude, "alpha": chosen.alpha, "recipe": chosen.recipe,
         "bar": chosen.bar, "cut_frames": cut, "refused": refused,
