@@ -15,8 +15,16 @@ from fiberweb.engines.stepping import damped_kick
 from fiberweb.model.mesh import Mesh
 
 
+class Merged(NamedTuple):
+    """Crossings of two nodes that are one point, each (merged,)."""
+
+    a: np.ndarray
+    b: np.ndarray
+    share_b: np.ndarray  # of b in their mass
+
+
 class Pairs(NamedTuple):
-    """Crossings of two nodes: operators on their relative motion, each (pairs,)."""
+    """Other crossings of two nodes: operators on their relative motion, each (pairs,)."""
 
     a: np.ndarray
     b: np.ndarray
@@ -47,7 +55,7 @@ class Motion(NamedTuple):
 
 def joint_operators(
     mesh: Mesh, layout: Layout, interleaving: Interleaving, step: float
-) -> tuple[Pairs, Groups]:
+) -> tuple[Merged, Pairs, Groups]:
     """What a step does to the nodes that meet at a crossing, beyond what it does to all.
 
     With v the velocities before the kick, v* after the kick of all but the crossing, and x the
@@ -58,13 +66,16 @@ def joint_operators(
         Q = Phi / phi,   P = E - exp(-h g) Q,   S = -Phi M^-1 K:
 
     exact for forces constant over the step, of which v* = exp(-h g) v + phi M^-1 f has had its
-    share phi (`damped_kick`). Nodes that are one point get the mass-weighted mean of v*, and S
-    closes within a step what round-off has put between them: it would grow like a random walk.
+    share phi (`damped_kick`). Nodes that are one point get the mass-weighted mean of v* and of
+    where it took them. Of more than two, S closes within a step what round-off has put between
+    them: it would grow like a random walk.
     """
-    pairs, others = [], []
+    merged, pairs, others = [], [], []
     for nodes, spring, damper in joint_groups(mesh, layout):
         mass = layout.mass[nodes]
-        if len(nodes) == 2:
+        if len(nodes) == 2 and np.isinf(spring).any():
+            merged.append((*interleaving.place[nodes], mass[1] / mass.sum()))
+        elif len(nodes) == 2:
             operators = _pair_operators(
                 mass, -spring[0, 1], -damper[0, 1], step, mesh.scene.damping
             )
@@ -72,14 +83,23 @@ def joint_operators(
         else:
             operators = _group_operators(mass, spring, damper, step, mesh.scene.damping)
             others.append((interleaving.place[nodes], operators))
-    a, b, *rest = (np.array(column) for column in zip(*pairs)) if pairs else [np.zeros(0)] * 7
-    # unsigned, since Numba looks for negative indices at every access otherwise
-    return Pairs(a.astype(np.uint64), b.astype(np.uint64), *rest), Groups(
-        np.cumsum([0] + [len(nodes) for nodes, _ in others]),
-        np.array([n for nodes, _ in others for n in nodes], dtype=np.int64),
-        np.cumsum([0] + [operators.size for _, operators in others]),
-        np.concatenate([operators.ravel() for _, operators in others] or [np.zeros(0)]),
+    return (
+        Merged(*_columns(merged, 3)),
+        Pairs(*_columns(pairs, 7)),
+        Groups(
+            np.cumsum([0] + [len(nodes) for nodes, _ in others]),
+            np.array([n for nodes, _ in others for n in nodes], dtype=np.int64),
+            np.cumsum([0] + [operators.size for _, operators in others]),
+            np.concatenate([operators.ravel() for _, operators in others] or [np.zeros(0)]),
+        ),
     )
+
+
+def _columns(rows: list[tuple], count: int):
+    """Columns of rows that begin with two nodes."""
+    a, b, *rest = (np.array(column) for column in zip(*rows)) if rows else np.zeros((count, 0))
+    # unsigned, since Numba looks for negative indices at every access otherwise
+    return a.astype(np.uint64), b.astype(np.uint64), *rest
 
 
 def joint_groups(mesh: Mesh, layout: Layout):
@@ -106,8 +126,6 @@ def joint_groups(mesh: Mesh, layout: Layout):
 
 def _pair_operators(mass, k, nu, step, rate) -> tuple[float, float, float]:
     """P, Q and S of two nodes, as factors of their relative motion."""
-    if np.isinf(k):
-        return 0.0, 0.0, -1.0 / step
     over_mass = (1.0 / mass).sum()
     whole = rate + nu * over_mass
     kick = damped_kick(whole, step)
@@ -146,6 +164,15 @@ def gather_pairs(pairs, relative, x, y, vx, vy):
         a, b = pairs.a[j], pairs.b[j]
         relative.vx[j], relative.x[j] = vx[b] - vx[a], x[b] - x[a]
         relative.vy[j], relative.y[j] = vy[b] - vy[a], y[b] - y[a]
+
+
+@kernel
+def merge_pass(merged, x, y, vx, vy):
+    """Make one point of two nodes after the kick, at their centre of mass."""
+    for j in range(merged.a.shape[0]):
+        a, b, share = merged.a[j], merged.b[j], merged.share_b[j]
+        for moved in (x, y, vx, vy):
+            moved[a] = moved[b] = moved[a] + share * (moved[b] - moved[a])
 
 
 @kernel

@@ -32,7 +32,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import diags_array
 
-from fiberweb.engines import crossings, energy, stepping, ties, viscosity
+from fiberweb.engines import crossings, energy, stepping, ties, viscosity, viscosity_mild
 from fiberweb.engines import kirchhoff_passes as passes
 from fiberweb.engines.base import Numerics, Recording, record_in_chunks
 from fiberweb.engines.jit import entry, kernel
@@ -94,8 +94,8 @@ def integrate(mesh: Mesh, numerics: Numerics, order: int = 4) -> Recording:
     arguments = (
         state, _scratch(state, interleaving.stride), coefficients(*chain, timing.step, order),
         *crossings.joint_operators(*chain, timing.step), stepping.build_guides(*chain), tied,
-        viscosity.build_viscosity(*chain, order), stepping.build_forcing(*chain, touched), read,
-        energy.build_ledger(*chain, mass), timing,
+        viscosity.build_viscosity(*chain, order, timing.step),
+        stepping.build_forcing(*chain, touched), read, energy.build_ledger(*chain, mass), timing,
     )  # fmt: skip
 
     def advance_to(first, displacement, energies):
@@ -137,9 +137,10 @@ def coefficients(
 
 
 @kernel
-def tie(pairs, groups, relative, before, kicked, state, step):
+def tie(merged, pairs, groups, relative, before, kicked, state, step):
     """Change velocities and positions after the kick to what crossings make of them."""
     x, y, vx, vy = state
+    crossings.merge_pass(merged, x, y, vx, vy)
     crossings.pair_pass(pairs, relative, x, y, vx, vy, step)
     crossings.group_pass(groups, before.vx, before.x, kicked, x, vx, step)
     crossings.group_pass(groups, before.vy, before.y, kicked, y, vy, step)
@@ -147,14 +148,14 @@ def tie(pairs, groups, relative, before, kicked, state, step):
 
 @entry
 def advance(
-    state, scratch, rods, pairs, groups, guides, tied, viscous, forcing, readouts, ledger, timing,
-    first, out, energies,
+    state, scratch, rods, merged, pairs, groups, guides, tied, viscous, forcing, readouts, ledger,
+    timing, first, out, energies,
 ):  # fmt: skip
     """Record, then integrate to the next sample, for each sample of `out`.
 
     Args:
-        state, scratch, rods, pairs, groups, guides, tied, viscous, forcing, readouts, ledger,
-            timing: see the classes of these names, `Ties`, `Viscosity` and, of the last,
+        state, scratch, rods, merged, pairs, groups, guides, tied, viscous, forcing, readouts,
+            ledger, timing: see the classes of these names, `Ties`, `Viscosity` and, of the last,
             `Stepping`.
         first: number of the first sample of `out`.
         out: displacement, (samples, readouts, 2), filled.
@@ -176,8 +177,14 @@ def advance(
     bonded, still = tied.bonds.a.shape[0] > 0, np.zeros(vx.shape[0])
     since = ties.grown(forcing, first * per_sample, step)  # what u grew by in the step before
     damping = viscosity.views(viscous, scratch, rods, state, stride)
-    viscous_power = viscosity.power_views(viscous, mean_x, mean_y, stride)
-    every = 1 if damped else energy.interval_steps(step)  # what is stiff dissipates by jerks
+    viscous_power = viscosity.power_views(viscous, vx, vy, stride)
+    curvatures = viscous.curvatures
+    mild = curvatures.last.shape[0] > 0
+    if mild and first == 0:  # at rest, until now
+        passes.stretch_pass(*stretch)
+        passes.turn_pass(*turn)
+        viscosity_mild.remember(curvatures, scratch.curvature)
+    every = energy.interval_steps(step)
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
         stepping.record(state, readouts, 0.5 * step, out[sample])
@@ -204,10 +211,15 @@ def advance(
             passes.stretch_pass(*stretch)
             passes.turn_pass(*turn)
             passes.tension_pass(*tension, rods.half)
+            due = energy.steps_due(k - start, every, per_sample)
+            if mild:
+                viscosity_mild.lead_pass(scratch.curvature, curvatures)
+                if due:
+                    lost = viscosity_mild.bending_loss(scratch.curvature, curvatures, rods, stride)
+                    energy.enter_dissipation(ledger, due, lost)
             passes.moment_pass(*moment)
             passes.force_pass(*force)
             crossings.gather_groups(groups, before, x, y, vx, vy)
-            due = energy.steps_due(k - start, every, per_sample)
             if due:
                 energy.keep(vx, vy, mean_x, mean_y)
             if damped:
@@ -219,16 +231,16 @@ def advance(
             passes.kick_pass(*kick_x, rods.decay, step)
             passes.kick_pass(*kick_y, rods.decay, step)
             if not damped:
-                tie(pairs, groups, relative, before, kicked, state, step)
+                tie(merged, pairs, groups, relative, before, kicked, state, step)
             elif tied.merged:  # made one point last, so that they are
                 viscosity.foresee(viscous, vx, vy)
                 viscosity.damp(viscous, damping, step, stride)
                 viscosity.take_back(viscous, vx, vy)
-                tie(pairs, groups, relative, before, kicked, state, step)
+                tie(merged, pairs, groups, relative, before, kicked, state, step)
                 viscosity.learn(viscous, vx, vy)
             else:  # springs first, or viscous stresses after them would limit the step
                 viscosity.foresee(viscous, vx, vy)
-                tie(pairs, groups, relative, before, kicked, state, step)
+                tie(merged, pairs, groups, relative, before, kicked, state, step)
                 viscosity.take_back(viscous, vx, vy)
                 viscosity.damp(viscous, damping, step, stride)
                 viscosity.learn(viscous, vx, vy)
@@ -245,11 +257,12 @@ def advance(
                 since = following - u
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
-            if due:  # at the mean velocity, of which times the step a force's work is
+            # at the mean velocity, of which times the step a force's work is
+            if damped:  # every step: what is stiff dissipates by jerks
+                energy.enter_dissipation(ledger, step, viscosity.edge_power(*viscous_power))
+            if due:
                 squared = energy.average(mean_x, mean_y, vx, vy, ledger.mass)
                 lost = ledger.damping * squared + energy.joint_power(ledger, mean_x, mean_y)
-                if damped:
-                    lost += viscosity.edge_power(*viscous_power)
                 energy.enter_dissipation(ledger, due * step, lost)
         if grown > ramp:
             pulled = energy.pull_work(x - 0.5 * step * vx, y - 0.5 * step * vy, readouts, forcing)

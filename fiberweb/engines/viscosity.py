@@ -27,6 +27,12 @@ from fiberweb.engines import lanes
 from fiberweb.engines.jit import kernel, summing
 from fiberweb.engines.lanes import inverse, load, store
 from fiberweb.engines.layout import Interleaving, Layout, packed
+from fiberweb.engines.viscosity_mild import (
+    Curvatures,
+    build_curvatures,
+    eliminate_tension,
+    substitute_tension,
+)
 from fiberweb.model.mesh import Mesh
 
 ENDLESS = 1e200  # compliance where there is nothing to stretch or bend: no stress at any rate
@@ -67,21 +73,21 @@ class Viscosity(NamedTuple):
     tension: np.ndarray
     force_x: np.ndarray  # of the edges
     force_y: np.ndarray
-    tied: np.ndarray  # nodes of crossings, (tied,)
-    push_x: np.ndarray  # see `foresee`, m/s, (tied,)
+    push_x: np.ndarray  # see `foresee`, m/s
     push_y: np.ndarray
+    curvatures: Curvatures
 
 
 def build_viscosity(
-    mesh: Mesh, layout: Layout, interleaving: Interleaving, order: int
+    mesh: Mesh, layout: Layout, interleaving: Interleaving, order: int, step: float = np.inf
 ) -> Viscosity:
-    """The material damping of a mesh: of order 2, with the moments of the usual chain, or of 4."""
+    """The material damping of a mesh: of order 2, with the moments of the usual chain, or of 4;
+    step: of an engine that may take moments explicitly."""
     time = mesh.scene.loss_time
     count = len(interleaving.nodes) if time > 0.0 else 0
     factors = Factors(*packed(*np.zeros((9, count))))
-    # unsigned, since Numba looks for negative indices at every access otherwise
-    tied = np.unique(interleaving.place[layout.joints]).astype(np.uint64)
-    work = *packed(*np.zeros((7, count))), tied, *np.zeros((2, len(tied)))
+    curvatures = build_curvatures(mesh, layout, interleaving.nodes, step)
+    work = *packed(*np.zeros((9, count))), curvatures
     if not count:
         return Viscosity(Compliance(*packed(*np.zeros((3, 0)))), factors, *work)
     axial = mesh.scene.fibres.axial_stiffness[layout.fibre] * time / 2
@@ -125,31 +131,28 @@ def views(viscosity, scratch, rods, state, s):
 
 @kernel
 def foresee(viscosity, vx, vy):
-    """Push the nodes of crossings as they were in the step before ..."""
-    for i in range(viscosity.tied.shape[0]):
-        n = viscosity.tied[i]
-        vx[n] += viscosity.push_x[i]
-        vy[n] += viscosity.push_y[i]
+    """Push nodes as they were in the step before ..."""
+    for i in range(vx.shape[0]):
+        vx[i] += viscosity.push_x[i]
+        vy[i] += viscosity.push_y[i]
 
 
 @kernel
 def take_back(viscosity, vx, vy):
     """... take that back, and keep what they move by before a change ..."""
-    for i in range(viscosity.tied.shape[0]):
-        n = viscosity.tied[i]
-        vx[n] -= viscosity.push_x[i]
-        vy[n] -= viscosity.push_y[i]
-        viscosity.push_x[i] = -vx[n]
-        viscosity.push_y[i] = -vy[n]
+    for i in range(vx.shape[0]):
+        vx[i] -= viscosity.push_x[i]
+        vy[i] -= viscosity.push_y[i]
+        viscosity.push_x[i] = -vx[i]
+        viscosity.push_y[i] = -vy[i]
 
 
 @kernel
 def learn(viscosity, vx, vy):
     """... and after it what it made of them."""
-    for i in range(viscosity.tied.shape[0]):
-        n = viscosity.tied[i]
-        viscosity.push_x[i] += vx[n]
-        viscosity.push_y[i] += vy[n]
+    for i in range(vx.shape[0]):
+        viscosity.push_x[i] += vx[i]
+        viscosity.push_y[i] += vy[i]
 
 
 @kernel
@@ -157,21 +160,23 @@ def damp(viscosity, passes, step, s):
     """Damp the velocities of fibres that bend between edges, after all else in a step, and let
     positions that were drifted by them follow; `passes` are `views`."""
     fibres, edges, along_x, along_y = passes
-    solve(viscosity, fibres, s)
-    edge_pass(*edges)
+    if viscosity.curvatures.last.shape[0] > 0:
+        solve(eliminate_tension, substitute_tension, viscosity, fibres, s)
+    else:
+        solve(eliminate, substitute, viscosity, fibres, s)
+        edge_pass(*edges)
     node_pass(*along_x, step)
     node_pass(*along_y, step)
 
 
 @kernel
-def solve(viscosity, fibres, s):
-    """The stresses: all fibres abreast where they are interleaved, four at a time and then one by
-    one; `fibres` are the first of the `views`."""
-    moment, tension = viscosity.moment, viscosity.tension
+def solve(eliminate, substitute, viscosity, fibres, s):
+    """The stresses, by two functions of a site: all fibres abreast where they are interleaved, four
+    at a time and then one by one; `fibres` are the first of the `views`."""
     # unsigned, since Numba looks for negative indices at every access otherwise
     width, four = np.uint64(s), np.uint64(lanes.COUNT)
     start = np.uint64(2) * width
-    end = np.uint64(moment.shape[0]) - start
+    end = np.uint64(viscosity.tension.shape[0]) - start
     row = start
     while row < end:
         i, after = row, row + width
@@ -185,10 +190,10 @@ def solve(viscosity, fibres, s):
     while row > start:
         i, after = row - width, row
         while i + four <= after:
-            substitute(lanes.four(), viscosity.factors, moment, tension, i, width)
+            substitute(lanes.four(), viscosity, fibres, i, width)
             i += four
         while i < after:
-            substitute(0.0, viscosity.factors, moment, tension, i, width)
+            substitute(0.0, viscosity, fibres, i, width)
             i += np.uint64(1)
         row -= width
 
@@ -261,9 +266,10 @@ def eliminate(zero, viscosity, fibres, i, width):
 
 
 @kernel
-def substitute(zero, factors, moment, tension, i, width):
+def substitute(zero, viscosity, fibres, i, width):
     """The stresses of one site, or of as many as `zero` has numbers."""
-    mm, mt1, mm1, mt2, mm2, tt, tm, tt1, tm1 = factors
+    mm, mt1, mm1, mt2, mm2, tt, tm, tt1, tm1 = viscosity.factors
+    moment, tension = viscosity.moment, viscosity.tension
     j = i + width
     k = j + width
     moment_j, moment_k = load(zero, moment, j), load(zero, moment, k)
@@ -297,16 +303,20 @@ def node_pass(x, v, kick, f1, f0, step):
 @kernel
 def power_views(viscosity, vx, vy, s):
     """What `edge_power` takes, in the order of its arguments."""
-    n = viscosity.force_x.shape[0]
+    bx, by = viscosity.before_x, viscosity.before_y
+    n = bx.shape[0]
     edge, behind = slice(0, n - s), slice(s, n)
-    forces = viscosity.force_x[edge], viscosity.force_y[edge]
-    return (*forces, vx[edge], vx[behind], vy[edge], vy[behind])
+    return (
+        viscosity.force_x[edge], viscosity.force_y[edge], vx[edge], vx[behind], bx[edge],
+        bx[behind], vy[edge], vy[behind], by[edge], by[behind],
+    )  # fmt: skip
 
 
 @summing
-def edge_power(fx, fy, vx0, vx1, vy0, vy1):
-    """Power (W) that forces of edges take at the velocities of their ends."""
+def edge_power(fx, fy, vx0, vx1, bx0, bx1, vy0, vy1, by0, by1):
+    """Power (W) that forces of edges take at the mean velocities of their ends in a step."""
     total = 0.0
     for i in range(fx.shape[0]):
-        total += fx[i] * (vx1[i] - vx0[i]) + fy[i] * (vy1[i] - vy0[i])
-    return total
+        total += fx[i] * (vx1[i] + bx1[i] - vx0[i] - bx0[i])
+        total += fy[i] * (vy1[i] + by1[i] - vy0[i] - by0[i])
+    return 0.5 * total
