@@ -24,11 +24,11 @@ from itertools import chain
 
 import numpy as np
 
-from fiberweb.engines import ENGINES, load
+from fiberweb.engines import ENGINES
 from fiberweb.model.network import crosshatch, polygon, web
 from fiberweb.model.scene import SETUPS, Scene
 from fiberweb.simulation import memory
-from fiberweb.simulation.plan import ACCURACIES, Plan, Request, plan, request
+from fiberweb.simulation.plan import ACCURACIES, Plan, Request, nanoseconds, plan, request
 from fiberweb.simulation.simulate import run
 
 KINDS = {"near": 0.5, "far": 0.35, "outside": 0.15}
@@ -199,9 +199,9 @@ def needed(scene: Scene, asked: Request) -> float:
 def affordable(planned: Plan) -> tuple[Plan, bool]:
     """A plan, of a shorter recording if need be, and whether that was so."""
     step = planned.numerics.time_step
-    each = 1e-9 * load(planned.engine).NANOSECONDS * planned.mesh.elements
-    length = step * max(FEWEST, AFFORDABLE / each)
     scene = planned.scene
+    each = 1e-9 * nanoseconds(scene, planned.engine) * planned.mesh.elements
+    length = step * max(FEWEST, AFFORDABLE / each)
     if scene.samples / scene.sample_rate <= length:
         return planned, False
     short = replace(scene, duration=length, sample_rate=max(scene.sample_rate, 4.0 / length))

@@ -167,6 +167,19 @@ def test_mild_damping_of_bending_is_explicit_and_the_same(waves, monkeypatch):
     assert solved != explicit == pytest.approx(solved, rel=2e-3)
 
 
+@pytest.mark.parametrize("ends", ["clamped", "pinned", "sliding", "sprung"])
+def test_no_bend_is_faster_than_the_fastest(ends):
+    """Of a fibre along x, whose stiffness in y is that of bending alone."""
+    more = dict(end_stiffness=50.0) if ends == "sprung" else {}
+    mesh = fibre(12, LENGTH, ends=ends, **more)
+    layout = kirchhoff_stiffness.fourth_order_layout(mesh)
+    stiffness, mass = kirchhoff_stiffness.stiffness_and_mass(mesh, layout)
+    size = len(layout.x)
+    lateral = stiffness.toarray()[size:, size:] / np.sqrt(np.outer(mass[size:], mass[size:]))
+    fastest = np.sqrt(np.linalg.eigvalsh(lateral)[-1])
+    assert 0.4 < fastest / viscosity_mild.fastest_bend(mesh, layout) < 1.0
+
+
 @pytest.mark.parametrize("setup", ["described", "compliant"])
 def test_explicit_moments_are_stable_far_beyond_what_is_called_mild(setup, monkeypatch):
     scene = Scene(crosshatch(4, length=0.5), setup=setup, duration=1.0, loss_factor=0.15, force=0.3)
