@@ -18,7 +18,8 @@ READOUTS = (0, 1, 2, 3, 6, 9)  # the four crossings and two midpoints
 NOISE = 1e-5  # m
 
 for seed in (1, 2):
-    scene = Scene(crosshatch(2, length=0.5), force=0.2, duration=60.0, sample_rate=10.0, seed=seed)
+    # below buckling: past it runs are chaotic, and another machine's round-off makes others
+    scene = Scene(crosshatch(2, length=0.5), force=0.05, duration=60.0, sample_rate=10.0, seed=seed)
     response = simulate(scene)
     table = {"time": response["time"].values, "input": response["input"].values}
     noise = np.random.default_rng(seed)

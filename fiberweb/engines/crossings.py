@@ -24,7 +24,7 @@ class Merged(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Other crossings of two nodes: operators on their relative motion, each (pairs,)."""
+    """Two nodes that spring and damper tie: operators on their relative motion, each (pairs,)."""
 
     a: np.ndarray
     b: np.ndarray
@@ -36,7 +36,7 @@ class Pairs(NamedTuple):
 
 
 class Groups(NamedTuple):
-    """The other crossings, of any number of nodes."""
+    """Crossings of more than two nodes."""
 
     starts: np.ndarray  # of each group in the members, and their end
     members: np.ndarray  # nodes
@@ -95,7 +95,7 @@ def joint_operators(
     )
 
 
-def _columns(rows: list[tuple], count: int):
+def _columns(rows: list[tuple], count: int) -> tuple[np.ndarray, ...]:
     """Columns of rows that begin with two nodes."""
     a, b, *rest = (np.array(column) for column in zip(*rows)) if rows else np.zeros((count, 0))
     # unsigned, since Numba looks for negative indices at every access otherwise

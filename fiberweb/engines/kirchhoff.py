@@ -177,14 +177,15 @@ def advance(
     bonded, still = tied.bonds.a.shape[0] > 0, np.zeros(vx.shape[0])
     since = ties.grown(forcing, first * per_sample, step)  # what u grew by in the step before
     damping = viscosity.views(viscous, scratch, rods, state, stride)
-    viscous_power = viscosity.power_views(viscous, vx, vy, stride)
+    viscous_power = viscosity.power_views(viscous, mean_x, mean_y, stride)
     curvatures = viscous.curvatures
     mild = curvatures.last.shape[0] > 0
     if mild and first == 0:  # at rest, until now
         passes.stretch_pass(*stretch)
         passes.turn_pass(*turn)
-        viscosity_mild.remember(curvatures, scratch.curvature)
-    every = energy.interval_steps(step)
+        now = scratch.curvature
+        energy.keep(now, now, curvatures.last, curvatures.earlier)
+    every = 1 if damped else energy.interval_steps(step)  # what is stiff dissipates by jerks
     for sample in range(out.shape[0]):
         start = (first + sample) * per_sample
         stepping.record(state, readouts, 0.5 * step, out[sample])
@@ -211,15 +212,12 @@ def advance(
             passes.stretch_pass(*stretch)
             passes.turn_pass(*turn)
             passes.tension_pass(*tension, rods.half)
-            due = energy.steps_due(k - start, every, per_sample)
             if mild:
                 viscosity_mild.lead_pass(scratch.curvature, curvatures)
-                if due:
-                    lost = viscosity_mild.bending_loss(scratch.curvature, curvatures, rods, stride)
-                    energy.enter_dissipation(ledger, due, lost)
             passes.moment_pass(*moment)
             passes.force_pass(*force)
             crossings.gather_groups(groups, before, x, y, vx, vy)
+            due = energy.steps_due(k - start, every, per_sample)
             if due:
                 energy.keep(vx, vy, mean_x, mean_y)
             if damped:
@@ -257,12 +255,14 @@ def advance(
                 since = following - u
             stepping.guide(guides, x, y, vx, vy, step)
             energy.enter_drive(ledger, forcing, 0.5 * step * u, vx, vy)
-            # at the mean velocity, of which times the step a force's work is
-            if damped:  # every step: what is stiff dissipates by jerks
-                energy.enter_dissipation(ledger, step, viscosity.edge_power(*viscous_power))
-            if due:
+            if due:  # at the mean velocity, of which times the step a force's work is
                 squared = energy.average(mean_x, mean_y, vx, vy, ledger.mass)
                 lost = ledger.damping * squared + energy.joint_power(ledger, mean_x, mean_y)
+                if damped:
+                    lost += viscosity.edge_power(*viscous_power)
+                if mild:
+                    led = scratch.curvature
+                    lost += viscosity_mild.bending_power(led, curvatures, rods, step, stride)
                 energy.enter_dissipation(ledger, due * step, lost)
         if grown > ramp:
             pulled = energy.pull_work(x - 0.5 * step * vx, y - 0.5 * step * vy, readouts, forcing)

@@ -1,8 +1,9 @@
 """Material damping (Kelvin-Voigt): tension and moment that grow with the rates of stretch and turn.
 
 Viscous stresses s = D B v, with v the velocities, B v the rates at which elements stretch and nodes
-turn, and D the viscosities. Stepped explicitly they would limit the step like a diffusion, to less
-than a hundredth of what it is. Here they are those of the mean velocity of a step, from v to
+turn, and D the viscosities. Stepped explicitly those of stretch, and in thick fibres those of turn,
+would limit the step like a diffusion, to less than a hundredth of what it is. Here they are those
+of the mean velocity of a step, from v to
 
     v' = v* - K B^T s,   (2 D^-1 + B K B^T) s = B (v + v*),
 
@@ -11,7 +12,8 @@ second order, never a limit of the step, and what is dissipated, s D^-1 s a seco
 kinetic energy lacks. A step solves one system a fibre, in the stresses; along the fibre, with the
 moment at each node before the tension of the edge behind it, it has four diagonals on each side.
 To fourth order the moments of a spline through the nodes are A^-1 times the turns, with the
-three-moment matrix A, so that A is in D^-1, banded as it is.
+three-moment matrix A, so that A is in D^-1, banded as it is. Where bending is hardly damped, only
+tensions are solved for: `fiberweb.engines.viscosity_mild`.
 
 Reference: Hairer, Lubich and Wanner, Geometric Numerical Integration (2006), VI, for the rule;
 Flügge, Viscoelasticity (1975), 1.3, for the material.
@@ -131,7 +133,7 @@ def views(viscosity, scratch, rods, state, s):
 
 @kernel
 def foresee(viscosity, vx, vy):
-    """Push nodes as they were in the step before ..."""
+    """Push nodes as they were in the step before: all of them, which is faster than a list ..."""
     for i in range(vx.shape[0]):
         vx[i] += viscosity.push_x[i]
         vy[i] += viscosity.push_y[i]
@@ -303,20 +305,16 @@ def node_pass(x, v, kick, f1, f0, step):
 @kernel
 def power_views(viscosity, vx, vy, s):
     """What `edge_power` takes, in the order of its arguments."""
-    bx, by = viscosity.before_x, viscosity.before_y
-    n = bx.shape[0]
+    n = viscosity.force_x.shape[0]
     edge, behind = slice(0, n - s), slice(s, n)
-    return (
-        viscosity.force_x[edge], viscosity.force_y[edge], vx[edge], vx[behind], bx[edge],
-        bx[behind], vy[edge], vy[behind], by[edge], by[behind],
-    )  # fmt: skip
+    forces = viscosity.force_x[edge], viscosity.force_y[edge]
+    return (*forces, vx[edge], vx[behind], vy[edge], vy[behind])
 
 
 @summing
-def edge_power(fx, fy, vx0, vx1, bx0, bx1, vy0, vy1, by0, by1):
-    """Power (W) that forces of edges take at the mean velocities of their ends in a step."""
+def edge_power(fx, fy, vx0, vx1, vy0, vy1):
+    """Power (W) that forces of edges take at the velocities of their ends."""
     total = 0.0
     for i in range(fx.shape[0]):
-        total += fx[i] * (vx1[i] + bx1[i] - vx0[i] - bx0[i])
-        total += fy[i] * (vy1[i] + by1[i] - vy0[i] - by0[i])
-    return 0.5 * total
+        total += fx[i] * (vx1[i] - vx0[i]) + fy[i] * (vy1[i] - vy0[i])
+    return total

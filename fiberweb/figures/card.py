@@ -177,7 +177,7 @@ def _table(ax: Axes, scores: pd.DataFrame) -> None:
     }
     sides = plots.TOTALS | {"ipc": "processing"} | COUNTS, errors
     lines = 1 + max(map(len, sides))
-    for side, quantities in enumerate(sides):
+    for side, quantities in enumerate(filter(None, sides)):
         rows = [["", *SHORT]] + [
             [label, *(_number(scores.loc[(name, readout), "value"]) for readout in READOUTS)]
             for name, label in quantities.items()
@@ -188,7 +188,8 @@ def _table(ax: Axes, scores: pd.DataFrame) -> None:
 
 
 def _line(ax: Axes, side: int, down: float, cells: list[str]) -> None:
-    """A line of the table, in its left or right half: a name, then a number for each readout."""
+    """A line of the table, in its left or right half: a name, then a number for each readout; down:
+    share of the height from the top."""
     ends = 0.5 * side + 0.16 + 0.064 * np.arange(len(cells))
     for end, cell in zip(ends, cells, strict=True):
         ax.text(end, 1.0 - down, cell, ha="right", va="center", fontsize=6.5)

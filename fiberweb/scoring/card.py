@@ -161,11 +161,13 @@ def card(response: xr.Dataset, **options) -> Card:
     check_frames(len(u) - start + horizon, rate, chosen.horizon, chosen.split)
     if chosen.taps and chosen.taps > start + 1:
         start = chosen.taps - 1
-        if (most := len(u) - horizon) < chosen.taps:
+        try:
+            check_frames(len(u) - start + horizon, rate, chosen.horizon, chosen.split)
+        except ValueError:
             raise ValueError(
                 f"taps = {chosen.taps} leave {max(0, len(u) - start)} of {len(u)} frames with all "
-                f"of them in the recording; give at most {most}"
-            )
+                "of them in the recording, too few to train and test on; give fewer"
+            ) from None
     fitted = slice(start, training_end(start, len(u), chosen.split))
     for part, where in {"training": fitted, "test": slice(fitted.stop, None)}.items():
         if not np.ptp(u[where]):

@@ -59,7 +59,7 @@ def verdict(quantities: Mapping[str, Mapping[str, tuple]], facts: Mapping) -> st
     if not better:
         by_value = "by value alone it is ahead in nothing"
     return (
-        f"{facts['blocks']} blocks of {facts['horizon_s']:g} s are too few to tell whether the "
+        f"{facts['blocks']} whole blocks of {facts['horizon_s']:g} s are too few to tell whether the "
         f"body computes more than {than}; {by_value}."
     )
 
@@ -76,7 +76,7 @@ def notes(scores: pd.DataFrame, facts: Mapping, sanity: str | None) -> list[str]
         said.append(f"Made by the recipe {facts['recipe']!r}, not by the defaults.")
     if facts["blocks"] < MANY:
         said.append(
-            f"The test part is {facts['tested_s']:.3g} s, {facts['blocks']} blocks of "
+            f"The test part is {facts['tested_s']:.3g} s, {facts['blocks']} whole blocks of "
             f"{facts['horizon_s']:g} s: the intervals are wide, and rough themselves."
         )
     if facts["cut_frames"]:

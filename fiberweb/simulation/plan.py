@@ -30,7 +30,7 @@ SAFETY_BY_STRAIN = {1e-3: 0.7, 1e-2: 0.4}
 # Source: model_ladder.csv has 0.0023 at 50 diameters, and it grows as the inverse square.
 MIN_SLENDERNESS = 5.0
 SHORTEST = 0.05  # element in diameters: below one, a finer mesh of a rod says nothing more
-MATERIAL_DAMPING = 3.0  # times as long a run takes whose steps solve a system for each fibre
+MATERIAL_DAMPING = 3.0  # times as long, at most, takes a run whose steps solve a system a fibre
 MOST_STEPS = 1e12  # of a run: at a microsecond for each, eleven days
 
 

@@ -26,6 +26,27 @@ def kirchhoff_energy(nodes, rest, stiffness, clamped: bool, order: int = 4):
         clamped: whether a wall holds the direction of the near end.
         order: 4, or 2 for the chain without spline and bow.
     """
+    curvature, form = kirchhoff_bending(nodes, rest, clamped, order)
+    edges, rest_edges = np.diff(nodes, axis=-2), np.diff(rest, axis=0)
+    length = np.sqrt((edges**2).sum(-1))
+    rest_length = np.sqrt((rest_edges**2).sum(-1))
+    bow = 0.0
+    if order == 4:
+        straight = np.zeros((*curvature.shape[:-1], 1))
+        ends = [curvature, straight] if clamped else [straight, curvature, straight]
+        everywhere = np.concatenate(ends, axis=-1)
+        bow = (0.5 * rest_length * (everywhere[..., 1:] + everywhere[..., :-1])) ** 2 / 24
+    bending = 0.5 * np.einsum("...i,ij,...j", curvature, form, curvature)
+    ratio = rest_length / length
+    stretching = 1 / ratio - 1 + np.log(ratio) + (1 / ratio - 1 + 0.5 * bow) * bow
+    stretching = (rest_length * stretching).sum(-1)
+    axial, bent = stiffness
+    return bent * bending + axial * stretching
+
+
+def kirchhoff_bending(nodes, rest, clamped: bool, order: int):
+    """Curvatures at the wall, if any, and at the inner nodes, and the form that the bending energy
+    over EI is half of in them."""
     edges, rest_edges = np.diff(nodes, axis=-2), np.diff(rest, axis=0)
     length = np.sqrt((edges**2).sum(-1))
     rest_length = np.sqrt((rest_edges**2).sum(-1))
@@ -39,11 +60,8 @@ def kirchhoff_energy(nodes, rest, stiffness, clamped: bool, order: int = 4):
     sine = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     cosine = (a * b).sum(-1)
     w = 1 - cosine
-    curvature = (
-        sine * (1 + w / 3 + 2 * w**2 / 15) / span
-    )  # at the wall, if any, and at the inner nodes
+    curvature = sine * (1 + w / 3 + 2 * w**2 / 15) / span
     form = np.diag(span)
-    bow = 0.0
     if order == 4:
         between = rest_length[: len(span) - 1] if clamped else rest_length[1:-1]
         before = np.r_[0.0, between] if clamped else rest_length[:-1]
@@ -53,16 +71,7 @@ def kirchhoff_energy(nodes, rest, stiffness, clamped: bool, order: int = 4):
         form = form + excess + excess @ np.diag(1 / span) @ excess
         if clamped and len(span) > 2 and np.allclose(rest_length[:3], rest_length[0]):
             form[:3, :3] += rest_length[0] / 108 * np.outer([3, -4, 1], [3, -4, 1])
-        straight = np.zeros((*curvature.shape[:-1], 1))
-        ends = [curvature, straight] if clamped else [straight, curvature, straight]
-        everywhere = np.concatenate(ends, axis=-1)
-        bow = (0.5 * rest_length * (everywhere[..., 1:] + everywhere[..., :-1])) ** 2 / 24
-    bending = 0.5 * np.einsum("...i,ij,...j", curvature, form, curvature)
-    ratio = rest_length / length
-    stretching = 1 / ratio - 1 + np.log(ratio) + (1 / ratio - 1 + 0.5 * bow) * bow
-    stretching = (rest_length * stretching).sum(-1)
-    axial, bent = stiffness
-    return bent * bending + axial * stretching
+    return curvature, form
 
 
 def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
@@ -78,8 +87,11 @@ def kirchhoff_masses(mesh: Mesh, order: int = 4) -> np.ndarray:
     return mass
 
 
-def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray:
-    """Displacement of every node at every step, shape (steps + 1, nodes, 2), m."""
+def kirchhoff(
+    mesh: Mesh, step: float, steps: int, order: int = 4, mild: bool = False
+) -> np.ndarray:
+    """Displacement of every node at every step, shape (steps + 1, nodes, 2), m; mild: viscous
+    moments are explicit."""
     scene, mass = mesh.scene, kirchhoff_masses(mesh, order)
     stiffness = np.column_stack([scene.fibres.axial_stiffness, scene.fibres.bending_stiffness])
     # the flow of dv/dt = a - rate v over a step, for a that is held
@@ -90,11 +102,17 @@ def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray
     pushed = np.zeros_like(mesh.position)
     x, v = mesh.position.copy(), np.zeros_like(mesh.position)
     out = [x - mesh.position]
+    history = {}  # curvatures of each fibre in the steps before
     for k in range(steps):
         time = (k + 0.5) * step
         x = x + 0.5 * step * v
         force = _outer(mesh, time) + _ties(mesh, x, order)
         for fibre, (start, end) in enumerate(pairwise(mesh.first)):
+            if mild:
+                force[start:end] -= _viscous_moments(
+                    x[start:end], mesh.position[start:end], history.setdefault(fibre, []), step,
+                    scene.loss_time * stiffness[fibre][1], mesh.clamped[fibre], order,
+                )  # fmt: skip
             force[start:end] -= _gradient(
                 lambda nodes, s=start, e=end, f=fibre: kirchhoff_energy(
                     nodes, mesh.position[s:e], stiffness[f], mesh.clamped[f], order
@@ -124,7 +142,7 @@ def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray
                 eased = kick * np.where(mesh.held[part], 0.0, 1.0 / mass[part, None])
                 new[part] = _viscous(
                     x[part], mesh.position[part], v[part], new[part], eased,
-                    scene.loss_time * stiffness[fibre], mesh.clamped[fibre], order,
+                    scene.loss_time * stiffness[fibre], mesh.clamped[fibre], order, mild,
                 )  # fmt: skip
             new = new - foreseen
             if not merged:
@@ -142,9 +160,23 @@ def kirchhoff(mesh: Mesh, step: float, steps: int, order: int = 4) -> np.ndarray
     return np.array(out)
 
 
-def _viscous(x, rest, before, after, eased, viscosity, clamped: bool, order: int):
-    """Velocities of a fibre after the midpoint rule of its viscous stresses; `eased` is the step
-    over the masses. Dense, with rows of B written out from the geometry."""
+def _viscous_moments(x, rest, history: list, step, viscosity, clamped: bool, order: int):
+    """Forces of viscous moments by the rate of the curvatures, of second order from three steps;
+    before the first, all were as in it."""
+    now, form = kirchhoff_bending(x, rest, clamped, order)
+    history[:] = [now, *(history or [now, now])[:2]]
+    rate = np.array([1.5, -2.0, 0.5]) @ np.array(history) / step
+
+    def power(nodes):
+        return viscosity * kirchhoff_bending(nodes, rest, clamped, order)[0] @ form @ rate
+
+    return _gradient(power, x)
+
+
+def _viscous(x, rest, before, after, eased, viscosity, clamped: bool, order: int, mild: bool):
+    """Velocities of a fibre after the midpoint rule of its viscous stresses, or if damping is mild,
+    of the tensions; `eased` is the step over the masses. Dense, with rows of B written out from the
+    geometry."""
     count, lengths = len(x), np.sqrt((np.diff(rest, axis=0) ** 2).sum(1))
     edges = np.diff(x, axis=0)
     length = np.sqrt((edges**2).sum(1))
@@ -155,7 +187,7 @@ def _viscous(x, rest, before, after, eased, viscosity, clamped: bool, order: int
         row = np.zeros((count, 2))
         row[e + 1], row[e] = tangent[e], -tangent[e]
         rows.append(row)
-    bent = list(range(0 if clamped else 1, count - 1))
+    bent = [] if mild else list(range(0 if clamped else 1, count - 1))
     for i in bent:
         row = np.zeros((count, 2))
         row[i + 1] += across[i]

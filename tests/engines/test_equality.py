@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fiberweb import Scene, crosshatch, engines, polygon, score, simulate
-from fiberweb.engines import kirchhoff
+from fiberweb.engines import kirchhoff, viscosity_mild
 from fiberweb.engines.base import Numerics
 from fiberweb.model.mesh import build
 from tests.engines import oracle
@@ -36,7 +36,7 @@ def rms(a):
     return np.sqrt(np.mean(a**2))
 
 
-def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwargs):
+def assert_follows_oracle(scene, elements_per_section, engine, step=None, mild=None, **kwargs):
     """Every node over 200 steps, to 1e-9 of the largest displacement: round-off, which large
     rotations and stretches multiply."""
     steps = 200
@@ -45,7 +45,8 @@ def assert_follows_oracle(scene, elements_per_section, engine, step=None, **kwar
     change = 1.0 / (steps * step) ** 3
     drive = [change, 0.0, 0.0, 0.0] if scene.stroke else [-change, 0.0, 0.0, 1.0]  # from 1 to 0
     mesh = replace(mesh, drive=np.array([drive]), readouts=every_node(mesh))
-    expected = getattr(oracle, engine)(mesh, step, steps, **kwargs)
+    plainly = kwargs if mild is None else kwargs | dict(mild=mild)
+    expected = getattr(oracle, engine)(mesh, step, steps, **plainly)
     largest = np.abs(expected).max()
     assert largest > 2e-3  # m, a diameter: far beyond the linear
     found = moved(sampled(mesh, step, steps + 1), engine, step, **kwargs)
@@ -125,6 +126,23 @@ def test_kirchhoff_kernel_against_oracle(network, fields, order):
     """Pairs at the crossings of a crosshatch; three diameters meet at the hexagon's centre."""
     scene = Scene(network, **dict(force=5.0, tension_ramp=0.0) | fields)
     assert_follows_oracle(scene, 4, "kirchhoff", order=order)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize(
+    ("network", "fields"),
+    [
+        (crosshatch(2, spacing=0.05), STROKE),
+        (polygon(6, diameter=0.2), dict()),
+        (polygon(6, diameter=0.2), COMPLIANT | dict(ends="sliding", tension=5.0)),
+        (crosshatch(2, spacing=0.05), MIXED | dict(bond_stiffness=5e-3)),
+    ],
+    ids=["carried", "polygon", "guided-polygon", "mixed"],
+)
+def test_explicit_viscous_moments_against_oracle(network, fields, order, monkeypatch):
+    monkeypatch.setattr(viscosity_mild, "MILD", np.inf)
+    scene = Scene(network, **dict(force=5.0, tension_ramp=0.0, loss_factor=0.02) | fields)
+    assert_follows_oracle(scene, 4, "kirchhoff", order=order, mild=True)
 
 
 @pytest.mark.parametrize(

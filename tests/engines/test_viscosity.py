@@ -124,7 +124,7 @@ def test_the_rule_is_second_order_in_the_step(setup, loss, monkeypatch):
     """Large motion of a viscous hexagon over some ms, against a step of a sixteenth: with crossings
     that are one point or have springs and dampers, which act beside it in turns; with moments that
     are solved for, and explicit ones."""
-    monkeypatch.setattr(viscosity_mild, "MILD", 1.0 if loss < 1.0 else 0.0)
+    monkeypatch.setattr(viscosity_mild, "MILD", np.inf if loss < 1.0 else 0.0)
     scene = Scene(
         polygon(6, diameter=0.2), setup, force=5.0, tension_ramp=0.0, loss_factor=loss, duration=1.0
     )
@@ -152,13 +152,13 @@ def share(mesh, step):
 
 @pytest.mark.parametrize("waves", [1, 2])
 def test_mild_damping_of_bending_is_explicit_and_the_same(waves, monkeypatch):
-    """Q = 200 and 50: the closed form within 1.5 %, and what is solved for within .2 %."""
+    """Q = 200: the closed form within 1.5 %, and what is solved for within .2 %."""
     mesh, shape = bowed(waves, 6 * waves, loss_factor=0.005 / waves**2, **LOSS)
     w = frequency_of(mesh, waves)
     step = 0.9 * largest_step(mesh, "kirchhoff")
     assert share(mesh, step) < viscosity_mild.MILD
     rates = {}
-    for mild in (0.0, viscosity_mild.MILD):
+    for mild in (0.0, np.inf):
         monkeypatch.setattr(viscosity_mild, "MILD", mild)
         decay, _ = poles(mesh, shape, "kirchhoff", step, 3, w / (2 * np.pi))
         rates[mild] = decay[0] / (w**2 * mesh.scene.loss_time / 2)

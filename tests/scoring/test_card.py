@@ -160,17 +160,17 @@ def test_a_task_that_diverges_is_left_out_with_the_safe_range(computing):
 
 def test_a_short_recording_says_that_it_is_short(computing):
     short = card(computing.isel(time=slice(0, 150)))
-    assert "3 blocks of 1 s: the intervals are wide, and rough themselves" in short.notes[0]
-    assert short.verdict.startswith("3 blocks of 1 s are too few to tell")
+    assert "3 whole blocks of 1 s: the intervals are wide, and rough themselves" in short.notes[0]
+    assert short.verdict.startswith("3 whole blocks of 1 s are too few to tell")
 
 
 def test_more_taps_than_the_recording_has_are_refused_by_name(computing):
-    frames = computing.sizes["time"]
-    rate = computing.attrs["sample_rate"]
-    most = frames - round(rate)
+    horizon = round(computing.attrs["sample_rate"])
+    most = computing.sizes["time"] - horizon + 1
     assert card(computing, taps=most - 200).facts["taps"] == most - 200
-    with pytest.raises(ValueError, match=f"taps = {most + 1} leave .* give at most {most}"):
-        card(computing, taps=most + 1)
+    for taps, split in ((most + 1, 0.75), (most, 0.99), (most, 0.01)):
+        with pytest.raises(ValueError, match=f"taps = {taps} leave .*; give fewer"):
+            card(computing, taps=taps, split=split)
 
 
 def test_who_passes_a_bar_is_said(computing):
