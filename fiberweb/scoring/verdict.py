@@ -59,8 +59,8 @@ def verdict(quantities: Mapping[str, Mapping[str, tuple]], facts: Mapping) -> st
     if not better:
         by_value = "by value alone it is ahead in nothing"
     return (
-        f"{facts['blocks']} whole blocks of {facts['horizon_s']:g} s are too few to tell whether the "
-        f"body computes more than {than}; {by_value}."
+        f"{facts['blocks']} whole blocks of {facts['horizon_s']:g} s are too few to tell whether "
+        f"the body computes more than {than}; {by_value}."
     )
 
 
