@@ -190,6 +190,11 @@ class Scene:
             )
         if self.stroke == 0.0:
             raise ValueError("stroke = 0 moves nothing; give a length, below 0 for the other way")
+        if self.stroke is not None and self.drives_one_point:
+            raise ValueError(
+                f"stroke = {self.stroke:g} carries a crossing whose fibres are one point, which is "
+                "not modelled; drive a point between crossings, or give a finite crossing_stiffness"
+            )
         if self.lever is not None and not abs(self.stroke or math.inf) <= self.lever:
             raise ValueError(
                 f"lever = {self.lever:g} carries a point no further than its length; give a "
@@ -244,6 +249,15 @@ class Scene:
     def wave_speed(self) -> float:
         """Of axial waves, sqrt(E / rho), in the fibre where they are fastest (m/s)."""
         return float(self.fibres.wave_speed.max())
+
+    @property
+    def drives_one_point(self) -> bool:
+        """Whether the driven point is a crossing whose fibres are one point."""
+        network = self.network
+        at = [distance for _, distance in network.stations[network.driven_fibre]]
+        return math.isinf(self.crossing_stiffness) and bool(
+            np.isclose(at, network.driven_distance).any()
+        )
 
     @property
     def loss_time(self) -> float:

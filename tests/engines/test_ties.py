@@ -277,6 +277,13 @@ def test_contradictions_are_one_sentence(fields, words):
     assert "\n" not in str(refused.value)
 
 
+def test_a_stroke_does_not_carry_what_is_one_point():
+    """The middle fibre of three is driven in its middle, where another one crosses it."""
+    with pytest.raises(ValueError, match="carries a crossing whose fibres are one point"):
+        Scene(crosshatch(3, spacing=0.1), stroke=0.01)
+    assert Scene(crosshatch(3, spacing=0.1), stroke=0.01, crossing_stiffness=1e3).stroke == 0.01
+
+
 def test_a_stroke_needs_a_node():
     with pytest.raises(ValueError, match="even number of elements_per_section"):
         build(Scene(crosshatch(4, length=0.5), stroke=0.01), 3)
