@@ -174,6 +174,8 @@ def advance(
     before, kicked = crossings.no_motion(groups.members.shape[0]), np.zeros(groups.members.shape[0])
     mean_x, mean_y = vx.copy(), vy.copy()
     carried, damped = tied.motor.nodes.shape[0] > 0, viscous.moment.shape[0] > 0
+    if damped:  # kept at every step, and no longer needed when the mean is
+        mean_x, mean_y = viscous.before_x, viscous.before_y
     bonded, still = tied.bonds.a.shape[0] > 0, np.zeros(vx.shape[0])
     since = ties.grown(forcing, first * per_sample, step)  # what u grew by in the step before
     damping = viscosity.views(viscous, scratch, rods, state, stride)
@@ -220,8 +222,6 @@ def advance(
             due = energy.steps_due(k - start, every, per_sample)
             if due:
                 energy.keep(vx, vy, mean_x, mean_y)
-            if damped:
-                energy.keep(vx, vy, viscous.before_x, viscous.before_y)
             if carried:  # before the kick, which decays and drifts them
                 after = (k + 1.5) * step
                 following = stepping.drive_value(forcing.drive, forcing.drive_rate, after)
