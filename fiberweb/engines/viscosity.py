@@ -133,7 +133,7 @@ def views(viscosity, scratch, rods, state, s):
 
 @kernel
 def foresee(viscosity, vx, vy):
-    """Push nodes as they were in the step before, of which those that nothing ties were not ..."""
+    """Push nodes as they were in the step before, to no effect where nothing ties them ..."""
     for i in range(vx.shape[0]):
         vx[i] += viscosity.push_x[i]
         vy[i] += viscosity.push_y[i]
