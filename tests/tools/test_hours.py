@@ -21,3 +21,14 @@ def test_the_best_forces_for_the_two_capacities_are_taken_to_differ():
         ("best_c_nl", 0.1),
         ("best_c_m", 0.05),
     }
+
+
+def test_a_cluster_is_done_when_its_last_job_is():
+    assert hours.until_done([3, 1, 2, 2], at_once=1, together=1) == 8
+    assert hours.until_done([3, 1, 2, 2], at_once=2, together=1) == 5  # 3 + 2, 1 + 2
+    assert hours.until_done([3, 1, 2, 2], at_once=2, together=2) == 4
+    assert hours.until_done([3, 1, 2, 2], at_once=9, together=3) == 6
+
+
+def test_a_group_of_runs_is_as_large_as_in_the_profile():
+    assert f"runs={hours.runs_a_group()}\n" in hours.PROFILE.read_text()
