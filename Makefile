@@ -84,8 +84,8 @@ random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 11 minutes of C
 test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: about 15 minutes
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/faults
 
-test-slurm: $(STAMP_SLURM) ## the smoke run through a SLURM on this machine: Debian, as root
-	PYTHONPATH=. $(VENV_SLURM)/bin/python -m pytest tests/slurm
+test-slurm: $(STAMP_SLURM) ## the workflow through a SLURM on this machine: Debian, as root
+	PYTHONPATH=. $(VENV_SLURM)/bin/python -m pytest --capture no tests/slurm
 
 test_authors: $(STAMP_0_3_2) ## published setup against the PyElastica the authors ran: 4 minutes
 	PYTHONPATH=. $(VENV_0_3_2)/bin/python -m pytest --confcutdir tests/authors tests/authors

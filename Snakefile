@@ -80,7 +80,7 @@ onstart:
     workflow.progress = progress.Progress(RESULTS, under_way)
     logger.addHandler(workflow.progress)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
-    add_call(RESULTS)
+    add_call(RESULTS, workflow.config_settings.configfiles)
     workflow.call = calls.begin(sys.argv[1:])
 
 

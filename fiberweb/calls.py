@@ -13,6 +13,8 @@ import json
 import os
 import platform
 import shlex
+import shutil
+import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -68,6 +70,11 @@ def at_work(call: dict) -> str | None:
             f"{here} was locked by a call on {call['host']}, and whether that is still at work can "
             f"only be told there: {by_hand}"
         )
+    if queued := _queued(call, here):
+        return (
+            f"SLURM still has jobs of a call in {here}: wait for their end, or "
+            f"`scancel {' '.join(queued)}`, before it is resumed"
+        )
     with (FOLDER / "lock").open("a") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -97,6 +104,18 @@ def _notes() -> list[tuple[Path, dict]]:
         except ValueError:  # cut short, as by a full disk
             note.unlink()
     return found
+
+
+def _queued(call: dict, folder: str) -> list[str]:
+    """Numbers of the jobs that SLURM has of a folder, of a call through it; one that waits holds no
+    lock, and whether one that runs does, hangs on the disk."""
+    if "slurm" not in " ".join(call["arguments"]) or not shutil.which("squeue"):
+        return []
+    asked = ["squeue", "--me", "--noheader", "--format=%i %Z"]
+    lines = subprocess.run(asked, capture_output=True, text=True).stdout.splitlines()
+    return [
+        number for number, _, where in (line.partition(" ") for line in lines) if where == folder
+    ]
 
 
 def _elsewhere(arguments: Sequence[str]) -> bool:

@@ -17,8 +17,8 @@ REMEDIES = {
     "Read-only file system": "name a folder that can be written, --config results=FOLDER",
     "Permission denied": "name a folder that can be written, --config results=FOLDER",
     "MemoryError": "give the same command again with fewer --cores",
+    "cannot be read": f"`make resume`, or delete that file and {AGAIN[5:]}",
     "ValueError": f"change what it names, {AGAIN}",
-    "cannot be read": f"delete that file, {AGAIN}",
 }
 REPORT = "this should not happen: please report it with the log, as CONTRIBUTING.md says"
 KILLED = "its log has no end: it was killed (out of memory?), or the disk is full"
@@ -46,7 +46,8 @@ def line(rule: str, wildcards: Mapping[str, str], log: str | Path, key: str | No
 
 
 def tell(jobs: Iterable, runs: Mapping[str, Run]) -> None:
-    """Print the lines of those of Snakemake's jobs that failed, of many the first ones.
+    """Print the lines of those of Snakemake's jobs that failed, of many the first ones and before
+    them how many there are.
 
     Args:
         jobs: that failed; or groups of jobs.
@@ -56,8 +57,8 @@ def tell(jobs: Iterable, runs: Mapping[str, Run]) -> None:
     for job in (job for each in jobs for job in getattr(each, "jobs", [each])):
         run = runs.get(job.wildcards_dict.get("run"))
         lines.append(line(job.rule.name, job.wildcards_dict, *job.log[:1], key=run and run.study))
-    if more := lines[SHOWN:]:
-        lines[SHOWN:] = [f"... and {len(more)} more jobs failed."]
+    if len(lines) > SHOWN:
+        lines = [f"{len(lines)} jobs failed, of which {SHOWN}:", *lines[:SHOWN]]
     print(*lines, sep="\n", file=sys.stderr)
 
 

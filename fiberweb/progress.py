@@ -20,6 +20,14 @@ FINISHED, FAILED = "finished", "failed"  # how a call ended
 BETWEEN = 30.0  # s from one line on the screen to the next
 WRITTEN = 5.0  # s from one writing of the file to the next
 RUN = "simulate"  # the rule that makes a run
+MEANINGS = {
+    "line": "how many runs and jobs are done, and when all will be",
+    "pid": "number of Snakemake's process",
+    "command": "the call, its words as a list",
+    "ended": f"how it ended: {FINISHED} or {FAILED}; empty while it runs, and where it was killed",
+    "begun": ("when it began, from 1970 on, UTC", "s"),
+    "at": ("when this was written, from 1970 on, UTC", "s"),
+}
 
 
 class Job(NamedTuple):

@@ -7,6 +7,7 @@ import platform
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -17,14 +18,32 @@ from fiberweb.source import source_hash
 
 PACKAGES = ("snakemake", "numpy", "scipy", "numba", "pyelastica", "xarray", "pandas", "matplotlib")
 
+MEANINGS = {
+    "[].started": "when the call started, UTC",
+    "[].command": "the call, as it was typed",
+    "[].config": "text of each config file that it laid over config/config.yaml, by path",
+    "[].commit": "of the code; null where there is no repository",
+    "[].uncommitted_changes": "whether the code differed from that commit",
+    "[].engine_source": "digest of all code that the motion depends on",
+    "[].python": "version of Python",
+    "[].machine": "operating system and processor",
+    "[].versions": "version of each package",
+}
 
-def add_call(results: str | Path) -> None:
-    """Add one call to <results>/provenance.json, and show all on a page of the report."""
+
+def add_call(results: str | Path, laid: Iterable[str | Path] = ()) -> None:
+    """Add one call to <results>/provenance.json, and show all on a page of the report.
+
+    Args:
+        results: folder of all results.
+        laid: config files that the call lays over config/config.yaml; their text is kept.
+    """
     path = Path(results) / "provenance.json"
     changes = _git("status", "--porcelain")
     call = {
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "config": {str(path): Path(path).read_text(encoding="utf-8-sig") for path in laid},
         "commit": _git("rev-parse", "HEAD"),
         "uncommitted_changes": None if changes is None else bool(changes),
         "engine_source": source_hash(),

@@ -17,6 +17,7 @@ from pathlib import Path
 NOTE = re.compile(r"^wrote (.+), (\d+) bytes(?:, sha256 (\w+))?$", re.MULTILINE)
 READ_ALL = "FIBERWEB_READ_ALL"  # variable with which content is looked at as well
 LOGS = "logs"  # folder of the logs among the results
+BESIDE = "-metadata.json"  # end of the name of what says what a table rests on
 
 
 def clear(paths: Iterable[str | Path]) -> None:
@@ -27,14 +28,15 @@ def clear(paths: Iterable[str | Path]) -> None:
 
 
 def note(log: str | Path, paths: Iterable[str | Path]) -> None:
-    """Print size and checksum of those files that exist; they are named as seen from the results.
+    """Print size and checksum of those files that exist, and of what lies beside them; they are
+    named as seen from the results.
 
     Args:
         log: of the job, somewhere in <results>/logs.
         paths: of the files, in <results> as well.
     """
     results = next(folder.parent for folder in Path(log).parents if folder.name == LOGS)
-    for path in map(Path, paths):
+    for path in (Path(f"{made}{end}") for made in paths for end in ("", BESIDE)):
         if path.exists():
             name, size = path.relative_to(results).as_posix(), path.stat().st_size
             print(f"wrote {name}, {size} bytes, sha256 {_checksum(path)}")
@@ -42,20 +44,22 @@ def note(log: str | Path, paths: Iterable[str | Path]) -> None:
 
 def broken(results: str | Path, read_all: bool = False) -> dict[str, str]:
     """Files of another size than their jobs left them with, or with `read_all` of other content,
-    and a sentence on each.
+    and a sentence on each. A table is broken where what lies beside it is, or is gone.
 
     A file without a note, such as that of a job at work, is taken for whole.
     """
     found = {}
     for log in sorted(Path(results, LOGS).rglob("*.log")):
         for name, size, checksum in NOTE.findall(log.read_text("utf-8", errors="replace")):
-            path = Path(results, name)
-            if not path.exists():
+            path, made = Path(results, name), Path(results, name.removesuffix(BESIDE))
+            if not made.exists():
                 continue
-            if (left := path.stat().st_size) != int(size):
-                found[str(path)] = f"{path} is broken: it has {left} bytes of the {size} written"
+            if not path.exists():
+                found[str(made)] = f"{path} is gone"
+            elif (left := path.stat().st_size) != int(size):
+                found[str(made)] = f"{path} is broken: it has {left} bytes of the {size} written"
             elif read_all and checksum and _checksum(path) != checksum:
-                found[str(path)] = f"{path} is broken: its content is not what was written"
+                found[str(made)] = f"{path} is broken: its content is not what was written"
     return found
 
 

@@ -55,6 +55,36 @@ def test_the_last_call_that_did_not_end_well(folder):
     assert calls.unfinished() is None
 
 
+def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time(
+    folder, tmp_path_factory, monkeypatch
+):
+    """With `--directory`, Snakemake works in another folder than the one of the shell."""
+    shell, given = str(tmp_path_factory.mktemp("shell")), []
+    monkeypatch.setenv("PWD", shell)
+    begun("figures", "--directory", str(folder), "--configfile", "my.yaml")
+    monkeypatch.setenv("PWD", str(folder))  # where it is resumed from
+
+    def run(command, cwd, env):
+        given.append((cwd, env["PWD"]))
+        return subprocess.CompletedProcess(command, 1)
+
+    monkeypatch.setattr(subprocess, "run", run)
+    assert resume.main() == 1
+    assert given == [(shell, shell)]
+
+
+def test_jobs_in_the_queue_of_a_cluster_are_at_work(folder, monkeypatch):
+    squeue = folder / "bin" / "squeue"
+    squeue.parent.mkdir()
+    squeue.write_text(f"#!/bin/sh\necho 7 /another/folder\necho 12 {folder}\n")
+    squeue.chmod(0o755)
+    monkeypatch.setenv("PATH", str(squeue.parent), prepend=os.pathsep)
+    begun("figures")
+    assert calls.at_work(calls.unfinished()[1]) is None
+    begun("figures", "--profile", "profiles/slurm")
+    assert "`scancel 12`, before it is resumed" in calls.at_work(calls.unfinished()[1])
+
+
 @pytest.mark.parametrize(
     ("what", "said"),
     [("begin(['twin'])", "`snakemake twin` is at work"), ("join()", "jobs are still")],

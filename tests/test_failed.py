@@ -14,6 +14,8 @@ TRACE = "capacity: scores\nTraceback (most recent call last):\n  File ...\n"
         (f"{TRACE}ValueError: alpha = 0: give more.\n{TOOK}", "alpha = 0: give more.", "change"),
         (f"{TRACE}OSError: [Errno 28] No space left on device: 'x'\nwrote a, 3 bytes\n{TOOK}",
          "No space left on device: 'x'.", "free some space"),
+        (f"{TRACE}ValueError: a/response.nc cannot be read (HDF error): .\n{TOOK}",
+         "a/response.nc cannot be read", "make resume"),
         (f"{TRACE}numpy.MemoryError: 9 GB\n{TOOK}", "numpy.MemoryError: 9 GB.", "fewer --cores"),
         (f"{TRACE}KeyError: 'x'\n{TOOK}", "KeyError: 'x'.", "please report it"),
         ("capacity: scores\nrun: web\n", "its log has no end: it was killed", "take fewer --cores"),
@@ -37,4 +39,5 @@ def test_of_many_the_first_are_told(tmp_path, capsys):
 
     failed.tell([Job()] * 7, {})
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == failed.SHOWN + 1 and lines[-1] == "... and 2 more jobs failed."
+    assert len(lines) == failed.SHOWN + 1 and lines[0] == "7 jobs failed, of which 5:"
+    assert lines[-1].startswith("table described failed: it left no log.")

@@ -1,6 +1,6 @@
 """What is said of the project in several files is the same in all, pyproject.toml being the first.
 
-Whether each file is valid is looked at by `make test-report`.
+Whether `CITATION.cff` is valid is looked at by `make test-report`.
 """
 
 import json

@@ -7,11 +7,14 @@ from fiberweb.source import source_hash
 
 
 def test_calls_are_added(tmp_path):
+    laid = tmp_path / "my.yaml"
+    laid.write_text("results: mine\n")
     add_call(tmp_path)
-    add_call(tmp_path)
+    add_call(tmp_path, [laid])
     calls = json.loads((tmp_path / "provenance.json").read_text())
     assert len(calls) == 2
     assert calls[0]["versions"]["numba"]
+    assert [call["config"] for call in calls] == [{}, {str(laid): "results: mine\n"}]
     assert calls[1]["engine_source"] == source_hash()
     page = (tmp_path / "report" / "provenance.html").read_text()
     assert page.count(calls[0]["engine_source"]) == 2 and calls[1]["started"] in page

@@ -4,6 +4,7 @@ import contextlib
 
 import pytest
 
+from fiberweb import origin
 from fiberweb.written import broken, clear, note
 
 
@@ -35,6 +36,22 @@ def test_a_file_cut_short_is_named_with_its_sizes(results):
         assert broken(results) == {str(path): sentence}
         path.unlink()  # what is not there is missing, and not broken
         assert broken(results) == {}
+
+
+def test_a_table_is_made_again_where_what_lies_beside_it_is_cut_short_or_gone(results):
+    table = results / "tables" / "topology.csv"
+    beside = origin.beside(table)
+    beside.write_text("{}")
+    with (results / "logs" / "topology.log").open("w") as file, contextlib.redirect_stdout(file):
+        note(results / "logs" / "topology.log", [table])
+    assert broken(results, read_all=True) == {}
+    beside.write_text("{")
+    sentence = f"{beside} is broken: it has 1 bytes of the 2 written"
+    assert broken(results) == {str(table): sentence}
+    beside.unlink()
+    assert broken(results) == {str(table): f"{beside} is gone"}
+    table.unlink()
+    assert broken(results) == {}
 
 
 def test_other_content_of_the_same_size_is_found_where_all_is_read(results):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from functools import cache
+from pathlib import Path
 
 from fiberweb.model.authors import ELEMENT, KNOTS
 from fiberweb.model.scene import Scene
@@ -11,6 +14,8 @@ from fiberweb.model.scene import Scene
 # a response is made of it, saved and scored; a knot of the input with its spline; a node with all
 # that an engine and its limit lay out about it.
 A_READOUT, A_KNOT, A_NODE = 3 * 2 * 8, 200, 3000
+
+CGROUP = Path("/sys/fs/cgroup/memory.max")  # as a container sees its own
 
 
 def needed(scene: Scene, elements_per_section: int | None) -> dict[str, float]:
@@ -44,7 +49,12 @@ def check(scene: Scene, elements_per_section: int | None) -> None:
 
 @cache
 def of_this_machine() -> int:
-    """Bytes of memory that there are."""
+    """Bytes of memory that there are, or that a cluster's job or a container may have of them."""
     import psutil
 
-    return psutil.virtual_memory().total
+    found = [psutil.virtual_memory().total]
+    if megabytes := os.environ.get("SLURM_MEM_PER_NODE"):
+        found.append(int(megabytes) << 20)
+    with contextlib.suppress(OSError, ValueError):  # there is none, or it says "max"
+        found.append(int(CGROUP.read_text()))
+    return min(found)

@@ -16,6 +16,8 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from fiberweb.progress import FILE, FINISHED
+
 ROOT = Path(__file__).parents[2]
 SOURCE = "source"  # folder of the copy
 WORKFLOW = f"{SOURCE}/Snakefile"
@@ -64,7 +66,9 @@ def describe(results: str | Path) -> Path:
     files = {path: _add_file(crate, results, path) for path in sorted(_files(results))}
     workflow = _add_workflow(crate, calls)
     made = [entity for path, entity in files.items() if path.relative_to(results).parts[0] in MADE]
-    _add_run(crate, calls, workflow, made, max(path.stat().st_mtime for path in files))
+    last = max(path.stat().st_mtime for path in files)
+    done = json.loads((results / FILE).read_text(encoding="utf-8"))["ended"] == FINISHED
+    _add_run(crate, calls, workflow, made, last, done)
     root = crate.root_dataset
     root["conformsTo"] = [
         crate.add_jsonld({"@id": at, "@type": "CreativeWork", "name": name, "version": version})
@@ -75,7 +79,7 @@ def describe(results: str | Path) -> Path:
         "Simulations, capacities, tables and figures of fibre networks as physical reservoirs, "
         "with the workflow that made them"
     )
-    root["datePublished"] = _time(max(path.stat().st_mtime for path in files))
+    root["datePublished"] = _time(last)
     root["license"] = crate.add_jsonld({"@id": MIT, "@type": "CreativeWork", "name": "MIT License"})
     authors = {"@id": "#authors", "@type": "Organization", "name": "The fiberweb authors"}
     root["author"] = root["publisher"] = crate.add_jsonld(authors)
@@ -155,9 +159,12 @@ def _add_workflow(crate, calls: list[dict]):
     return workflow
 
 
-def _add_run(crate, calls: list[dict], workflow, made: list, end: float) -> None:
-    """What was done: from the first call to the last file."""
-    configs = [entity for entity in crate.data_entities if entity.id.startswith(f"{SOURCE}/config")]
+def _add_run(crate, calls: list[dict], workflow, made: list, end: float, done: bool) -> None:
+    """What was done: from the first call to the last file, and whether the last call came to its
+    end."""
+    # of the configs laid over the project's own, provenance.json has the text
+    given = (f"{SOURCE}/config", "provenance.json")
+    configs = [entity for entity in crate.data_entities if entity.id.startswith(given)]
     commands = ", then ".join(dict.fromkeys(call.get("command", "unknown") for call in calls))
     agent = crate.add_jsonld({
         "@id": "#operator", "@type": "Person", "name": "whoever ran the workflow"
@@ -169,7 +176,7 @@ def _add_run(crate, calls: list[dict], workflow, made: list, end: float) -> None
         "description": f"{commands}; Python {calls[-1]['python']} on {calls[-1]['machine']}",
         "startTime": calls[0].get("started"),
         "endTime": _time(end),
-        "actionStatus": "http://schema.org/CompletedActionStatus",
+        "actionStatus": f"http://schema.org/{'Completed' if done else 'Failed'}ActionStatus",
     })  # fmt: skip
     action["agent"], action["instrument"] = agent, workflow
     action["object"], action["result"] = configs, made

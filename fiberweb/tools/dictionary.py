@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from fiberweb import products, studies
+from fiberweb import origin, products, progress, provenance, studies
 from fiberweb.meanings import Meanings, text_and_unit
 from fiberweb.scoring import card
+from fiberweb.written import BESIDE
 
 PAGE = Path(__file__).parents[2] / "docs" / "data-dictionary.md"
 INTRODUCTION = """# Data dictionary
@@ -77,6 +78,9 @@ def dictionary() -> list[Made]:
         *made,
         Made([f"{folder}.csv"], scores, card.SCORES | quantities),
         Made([f"{folder}.json"], "The whole card.", card.CARD | facts | profile),
+        Made(["provenance.json"], "What made the results, call by call.", provenance.MEANINGS),
+        Made(["progress.json"], "How far the last call is.", progress.MEANINGS),
+        Made([f"tables/<setup>/<table>{BESIDE}"], "What a table rests on.", origin.MEANINGS),
     ]
 
 

@@ -27,7 +27,7 @@ def main() -> int:
     if refusal := calls.at_work(call):
         sys.exit(refusal)
     command = [sys.executable, "-m", "snakemake", *call["arguments"], *sys.argv[1:]]
-    where = {"cwd": call["from"], "env": os.environ | {READ_ALL: "1"}}
+    where = {"cwd": call["from"], "env": os.environ | {READ_ALL: "1", "PWD": call["from"]}}
     print("Going on with:", shlex.join(["snakemake", *command[3:]]), flush=True)
     signal.signal(signal.SIGINT, lambda *_: None)  # Ctrl-C is for Snakemake, which takes its time
     if calls.SNAKEMAKES.is_dir():

@@ -71,6 +71,13 @@ def test_results_are_a_workflow_run_crate(described, offline):
     assert found.passed(), [issue.message for issue in found.get_issues()]
 
 
+def test_a_call_that_failed_is_said_to_have(described):
+    assert "CompletedActionStatus" in described.read_text()
+    progress = described.with_name("progress.json")
+    progress.write_text(progress.read_text().replace('"finished"', '"failed"'))
+    assert "FailedActionStatus" in crate.describe(described.parent).read_text()
+
+
 def test_the_validator_does_find_what_is_wrong(described, offline):
     said = json.loads(described.read_text())
     said["@graph"] = [each for each in said["@graph"] if each["@type"] != "CreateAction"]

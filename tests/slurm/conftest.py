@@ -1,6 +1,7 @@
 """These tests start a SLURM of one node on this machine, as root: `make test-slurm` installs
 Snakemake's executor for it into an environment of its own. Elsewhere nothing here is collected."""
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -8,6 +9,7 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
+import psutil
 import pytest
 
 plugin = find_spec("snakemake_executor_plugin_slurm")
@@ -30,6 +32,7 @@ MpiDefault=none
 MinJobAge=3600
 CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
 ReturnToService=2
+SlurmdTimeout=10
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool
 SlurmctldPidFile={folder}/slurmctld.pid
@@ -55,8 +58,7 @@ class Cluster:
         self._start("munged", "runuser", "-u", "munge", "--", "munged", "--foreground", "--force")
         self._until("munge", "--no-input")
         self.start_controller()
-        self._start("slurmd", "slurmd", "-D")
-        self._until("srun", "--immediate=5", "true")
+        self.start_node()
 
     def start_controller(self):
         self._start("slurmctld", "slurmctld", "-D")
@@ -66,6 +68,21 @@ class Cluster:
         controller = self._daemons.pop("slurmctld")
         controller.kill()
         controller.wait()
+
+    def start_node(self):
+        self._start("slurmd", "slurmd", "-D")
+        self._until("srun", "--immediate=5", "true")
+
+    def kill_node(self):
+        """Kill what runs on the node, as a loss of power does, until the controller misses it."""
+        node = self._daemons.pop("slurmd")
+        steps = [each for each in psutil.process_iter() if each.name() == "slurmstepd"]
+        running = [below for step in steps for below in step.children(recursive=True)]
+        for process in (node, *steps, *running):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                process.kill()
+        node.wait()
+        self._until("sh", "-c", "sinfo --noheader --format=%T | grep --quiet down")
 
     def stop(self):
         CONFIG.unlink()

@@ -10,9 +10,8 @@ import xarray as xr
 from fiberweb.scoring.tables import VERDICTS
 from fiberweb.simulation.conventions import OF_FILES
 from fiberweb.tools.dictionary import dictionary
+from fiberweb.written import BESIDE
 
-# of the calls, and of what tables rest on: docs/provenance.md
-ABOUT_CALLS = re.compile(r"^(provenance|progress)\.json$|-metadata\.json$")
 OPTIONAL = set(VERDICTS.values())  # columns that come with certificates
 
 
@@ -22,16 +21,19 @@ def compared(results):
     found = set()
     for path in sorted(results.rglob("*.*")):
         name = path.relative_to(results).as_posix()
-        if path.suffix not in (".csv", ".nc", ".json") or ABOUT_CALLS.search(name):
+        if path.suffix not in (".csv", ".nc", ".json"):
             continue
+        if name.endswith(BESIDE):
+            assert path.with_name(path.name.removesuffix(BESIDE)).exists()
+            name = f"tables/any/any{BESIDE}"
         (kind,) = [kind for kind in said if _is(name, kind)]
         found.add(kind)
-        {".csv": _table, ".nc": _variables, ".json": _card}[path.suffix](path, said[kind])
+        {".csv": _table, ".nc": _variables, ".json": _named}[path.suffix](path, said[kind])
     return found
 
 
 def _is(name, kind):
-    pattern = kind.replace("<run>", "*").replace("<name>", "*").replace("<setup>", "*")
+    pattern = re.sub("<[a-z]+>", "*", kind)
     return fnmatch(name, pattern) and name.count("/") == kind.count("/")
 
 
@@ -52,8 +54,26 @@ def _variables(path, made):
                 assert variable.attrs["units"] in unit.split(" or "), (path, name)
 
 
-def _card(path, made):
-    card = json.loads(path.read_text(encoding="utf-8"))
-    names = {*card, *(f"facts.{name}" for name in card["facts"])}
-    names |= {f"profile[].{name}" for row in card["profile"] for name in row}
-    assert names <= set(made.meanings), path
+def _named(path, made):
+    """Every name in a file has a meaning, or is below one that has, and of whose parts none does:
+    of a run, of a package."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    parents = [said for said in made.meanings if not _below(said, made.meanings)]
+    for name in _names(content):
+        meant = name in made.meanings or any(_below(parent, [name]) for parent in parents)
+        assert meant, (path, name)
+
+
+def _below(parent, names):
+    return any(name.startswith((f"{parent}.", f"{parent}[")) for name in names)
+
+
+def _names(content, at=""):
+    if isinstance(content, dict):
+        for name, value in content.items():
+            yield from _names(value, f"{at}.{name}" if at else name)
+    elif isinstance(content, list):
+        for value in content:
+            yield from _names(value, f"{at}[]")
+    else:
+        yield at

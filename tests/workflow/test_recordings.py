@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 import yaml
 
+from fiberweb import origin
 from tests.workflow.conftest import ROOT
 from tests.workflow.explained import compared
 
@@ -26,10 +27,12 @@ def test_broken_recordings_are_refused_and_the_others_are_scored(tmp_path):
     config["results"] = str(tmp_path / "out")
     (tmp_path / "my.yaml").write_text(yaml.safe_dump(config))
     call = [sys.executable, "-m", "snakemake", "recordings", "--configfile", tmp_path / "my.yaml"]
-    done = subprocess.run(
-        [*call, "--cores", "2", "--directory", tmp_path, "-s", ROOT / "Snakefile"],
-        cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
-    )  # fmt: skip
+    given = {
+        "args": [*call, "--cores", "2", "--directory", tmp_path, "-s", ROOT / "Snakefile"],
+        "env": os.environ | {"PYTHONPATH": str(ROOT)},
+        "cwd": ROOT, "capture_output": True, "text": True,
+    }  # fmt: skip
+    done = subprocess.run(**given)
     assert done.returncode == 0, done.stdout + done.stderr
     out = tmp_path / "out" / "recordings"
     card = json.loads((out / "take1" / "card.json").read_text())
@@ -46,7 +49,15 @@ def test_broken_recordings_are_refused_and_the_others_are_scored(tmp_path):
         (finding,) = pd.read_csv(out / name / "sanity.csv").to_dict("records")
         assert finding["severity"] == "refused" and words in finding["sentence"]
         assert (out / name / "card.png").exists() and (out / name / "card.csv").exists()
-    assert len(compared(out.parent)) == 4  # card.json and card.csv, recording.nc and sanity.csv
+    # card.json and card.csv, recording.nc and sanity.csv; what tables rest on; two of the call
+    assert len(compared(out.parent)) == 7
+    for table in ("recording.nc", "sanity.csv", "card.csv"):
+        assert origin.beside(out / "take1" / table).exists()
+    whole = (out / "take1" / "recording.nc").read_bytes()
+    (out / "take1" / "recording.nc").write_bytes(whole[:-1])
+    again = subprocess.run(**given)
+    assert again.returncode == 0 and "it is made again with what rests on it" in again.stderr
+    assert (out / "take1" / "recording.nc").read_bytes() == whole
 
 
 @pytest.mark.slow

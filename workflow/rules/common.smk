@@ -31,7 +31,7 @@ SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}  # of a figure
 def make_whole(wildcards):
     """Have files that are broken made again, as `--forcerun` would those that are asked for.
 
-    Input function of the one job that every file hangs on; it gives no files.
+    Input function of the jobs that every file hangs on, the first of a call; it gives no files.
     """
     workflow.dag.forcefiles.update(BROKEN)
     return []

@@ -73,4 +73,4 @@ def cards(wildcards):
 def recorded_file(wildcards):
     """The file of a recording; none where it is not there, which the job then says."""
     path = RECORDED[wildcards.recording].path
-    return [str(path)] if path.exists() else []
+    return [*make_whole(wildcards), *([str(path)] if path.exists() else [])]

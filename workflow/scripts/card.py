@@ -5,7 +5,7 @@ from pathlib import Path
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 from fiberweb.figures.card import draw
 from fiberweb.scoring.card import attempt
 
@@ -14,5 +14,6 @@ print("options:", snakemake.params.options or "the defaults")
 card = attempt(products.read(snakemake.input[0]), snakemake.params.options)
 print(card)
 products.write(card.scores, snakemake.output.table)
+origin.write(snakemake.output.table, snakemake.input, snakemake.params.recipe)
 Path(snakemake.output.json).write_text(json.dumps(card.as_dict(), indent=1), encoding="utf-8")
 draw(card.as_dict(), snakemake.output.png)

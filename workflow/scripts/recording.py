@@ -2,7 +2,7 @@
 
 from logs import to_log
 
-from fiberweb import products
+from fiberweb import origin, products
 from fiberweb.recordings import sanity
 from fiberweb.recordings.read import attempt
 
@@ -15,3 +15,5 @@ print("options:", snakemake.params.options or "what the file says")
 response = attempt(snakemake.params.path, snakemake.params.options)
 products.write(response, snakemake.output.response)
 products.write(sanity(response), snakemake.output.sanity)
+for path in snakemake.output:
+    origin.write(path, [], snakemake.params.recipe)
