@@ -10,6 +10,7 @@ to_log(
     "runs a scene again with what is no physics changed, one thing after the other",
     "less than six times what the run took: see its log in logs/simulate",
 )
+print("scoring:", snakemake.params.scoring)
 response = products.read(snakemake.input[0])
 made = certificate(response, **snakemake.params.scoring)
 print(made.to_string())
