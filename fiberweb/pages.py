@@ -41,7 +41,7 @@ def of_calls(calls: list[dict]) -> str:
         for call in reversed(calls)
         for key, value in {"": "", **call}.items()
     ]
-    return _whole("provenance", "<table>", *rows, "</table>")
+    return _whole("provenance", '<table style="white-space: pre-wrap">', *rows, "</table>")
 
 
 def _whole(title: str, *parts: str) -> str:

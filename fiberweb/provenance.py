@@ -42,7 +42,7 @@ def add_call(results: str | Path, laid: Iterable[str | Path] = ()) -> None:
     changes = _git("status", "--porcelain")
     call = {
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "command": shlex.join(["snakemake", *sys.argv[1:]]),
         "config": {str(path): Path(path).read_text(encoding="utf-8-sig") for path in laid},
         "commit": _git("rev-parse", "HEAD"),
         "uncommitted_changes": None if changes is None else bool(changes),
