@@ -73,7 +73,7 @@ test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
 
 test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons: half an hour
-	ANYWHERE=1 $(VENV)/bin/python -m pytest tests/anywhere
+	ANYWHERE=1 $(VENV)/bin/python -m pytest -rs tests/anywhere
 
 fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them broken
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/fuzz --hypothesis-profile fuzz
@@ -82,7 +82,7 @@ random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 11 minutes of C
 	$(VENV)/bin/python -m fiberweb.tools.random_scenes
 
 test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: about 15 minutes
-	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/faults
+	FAULTS=1 $(VENV)/bin/python -m pytest --numprocesses $(CORES) -rs tests/faults
 
 test-slurm: $(STAMP_SLURM) ## the workflow through a SLURM on this machine: Debian, as root
 	PYTHONPATH=. $(VENV_SLURM)/bin/python -m pytest --capture no tests/slurm

@@ -1,6 +1,7 @@
-"""Real signals, disks and permissions: `make test-faults`, or pytest with tests/faults or a file in
-it. Elsewhere nothing here is collected."""
+"""Real signals, disks and permissions: `make test-faults`, or pytest with FAULTS=1. Elsewhere
+nothing here is collected."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -12,7 +13,7 @@ import pytest
 
 from tests.workflow.conftest import Tree
 
-collect_ignore_glob = [] if any("tests/faults" in given for given in sys.argv) else ["test_*.py"]
+collect_ignore_glob = [] if os.environ.get("FAULTS") else ["test_*.py"]
 
 # A job has a Python of its own or, where a call has more jobs than this, is a fork of one process.
 WAYS = {"own": "> 8", "forks": "> 0"}
