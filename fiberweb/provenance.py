@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
 import shlex
 import subprocess
@@ -42,8 +43,10 @@ def add_call(results: str | Path, laid: Iterable[str | Path] = ()) -> None:
     changes = _git("status", "--porcelain")
     call = {
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": shlex.join(["snakemake", *sys.argv[1:]]),
-        "config": {str(path): Path(path).read_text(encoding="utf-8-sig") for path in laid},
+        "command": _letters(shlex.join(["snakemake", *sys.argv[1:]])),
+        "config": {
+            _letters(str(path)): Path(path).read_text(encoding="utf-8-sig") for path in laid
+        },
         "commit": _git("rev-parse", "HEAD"),
         "uncommitted_changes": None if changes is None else bool(changes),
         "engine_source": source_hash(),
@@ -73,6 +76,11 @@ def _earlier(path: Path) -> list[dict]:
         aside = path.replace(path.with_suffix(".broken"))
         print(f"{path} is broken: it is now {aside}, and a new one begins.", file=sys.stderr)
         return []
+
+
+def _letters(given: str) -> str:
+    """What was typed; where the locale knows ASCII alone, Python has other letters as bytes."""
+    return os.fsencode(given).decode("utf-8", errors="replace")
 
 
 def _git(*arguments: str) -> str | None:

@@ -21,8 +21,8 @@ from fiberweb.written import READ_ALL, broken
 
 # jobs run side by side, and sums in another order by more threads would give other bits
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# a notebook sets its own, without which matplotlib cannot even be imported elsewhere
-os.environ.update(MPLBACKEND="agg")
+# a notebook sets another backend, and a locale of ASCII alone hides folders from NetCDF
+os.environ.update(MPLBACKEND="agg", PYTHONUTF8="1")
 # not every disk has file locks, and files that appear whole under their names need none
 os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
 SETUP_OF = {suffix: setup for setup, suffix in SUFFIXES.items()}  # of a figure
