@@ -63,7 +63,7 @@ class Faulty(Tree):
             stdout=(self.folder / "printed").open("a"), stderr=subprocess.STDOUT,
         )  # fmt: skip
 
-    def printed(self):
+    def said(self):
         """What the calls that were started have said."""
         return (self.folder / "printed").read_text()
 
@@ -80,7 +80,7 @@ class Faulty(Tree):
                 except psutil.Error:
                     continue
             time.sleep(0.005)
-        raise AssertionError(f"no job of {stage} was seen\n{self.printed()}")
+        raise AssertionError(f"no job of {stage} was seen\n{self.said()}")
 
     def made(self):
         """Content of all that is made, by path."""

@@ -18,7 +18,7 @@ RULES = ("simulate", "capacity", "figure")
 def kill_job(tree, call, job):
     job.kill()
     assert call.wait() != 0
-    assert "its log has no end: it was killed" in tree.printed()
+    assert "its log has no end: it was killed" in tree.said()
 
 
 def kill_snakemake(tree, call, job):
@@ -46,7 +46,7 @@ def interrupt(tree, call, job):
     os.killpg(call.pid, signal.SIGINT)
     job.resume()
     assert call.wait(timeout=600) != 0
-    assert "Traceback" not in tree.printed()
+    assert "Traceback" not in tree.said()
 
 
 @pytest.mark.parametrize("end", [kill_job, kill_snakemake, kill_all, interrupt])
@@ -57,7 +57,7 @@ def test_what_is_killed_in_every_stage_goes_on(fresh, expected, end):
         end(fresh, call, fresh.job(call, stage))
     printed = fresh.resume()
     assert f"Going on with: snakemake {' '.join(TARGET)}" in printed
-    assert [finished(fresh.printed() + printed, rule) for rule in RULES] == [1, 1, 1]
+    assert [finished(fresh.said() + printed, rule) for rule in RULES] == [1, 1, 1]
     assert fresh.made() == expected
     assert "there is nothing to resume" in fresh.resume()
 
@@ -69,7 +69,7 @@ def test_two_calls_at_once(fresh, expected):
     refused = fresh.resume(expected=1)
     assert f"`snakemake {' '.join(TARGET)}` is at work" in refused and str(call.pid) in refused
     job.resume()
-    assert call.wait() == 0, fresh.printed()
+    assert call.wait() == 0, fresh.said()
     assert fresh.made() == expected
 
 
