@@ -72,7 +72,7 @@ def test_a_node_that_dies_loses_no_run(cluster, tree, here):
     cluster.start_node()
     assert call.wait() == 0, printed.read_text()
     anew = made(tree.folder / "anew")
-    assert "figures/ridge-described.png" in anew
+    assert "figures/ridge.png" in anew
     assert [name for name in anew if here[name] != anew[name]] == []
 
 
