@@ -10,15 +10,15 @@ from pathlib import Path
 from fiberweb import timed
 from fiberweb.runs import Run
 
-AGAIN = "then give the same command again"
+AGAIN = "give the same command again"
 # what is in the last line of a log, and what helps
 REMEDIES = {
-    "No space left on device": f"free some space, {AGAIN}",
+    "No space left on device": f"free some space, then {AGAIN}",
     "Read-only file system": "name a folder that can be written, --config results=FOLDER",
     "Permission denied": "name a folder that can be written, --config results=FOLDER",
-    "MemoryError": "give the same command again with fewer --cores",
-    "cannot be read": f"`make resume`, or delete that file and {AGAIN[5:]}",
-    "ValueError": f"change what it names, {AGAIN}",
+    "MemoryError": f"{AGAIN} with fewer --cores",
+    "cannot be read": f"`make resume`, or delete that file and {AGAIN}",
+    "ValueError": f"change what it names, then {AGAIN}",
 }
 REPORT = "this should not happen: please report it with the log, as CONTRIBUTING.md says"
 KILLED = "its log has no end: it was killed (out of memory?), or the disk is full"
@@ -41,7 +41,7 @@ def line(rule: str, wildcards: Mapping[str, str], log: str | Path, key: str | No
     helps = (remedy for words, remedy in REMEDIES.items() if words in reason)
     remedy = next(helps, REPORT)
     if reason == KILLED:
-        remedy = f"take fewer --cores, or free some space, {AGAIN}"
+        remedy = f"take fewer --cores, or free some space, then {AGAIN}"
     return f"{what} failed: {reason}. Log: {log}. What to do: {remedy}."
 
 

@@ -18,17 +18,16 @@ from fiberweb.written import BESIDE
 CONTEXT = "http://www.w3.org/ns/csvw"
 PACKAGES = ("numpy", "scipy", "pandas", "xarray", "scikit-learn")
 
-NOTE = {
-    "recipe": "digest of the code, the options and all that the table is made of",
-    "versions": "version of each package that made it",
-    "engines": "the versions that each engine ran with, by the digest of its source",
-    "made_of": "names of the tables that it is made of",
-    "scene": "what the scenes of all runs have in common",
-    "runs": "of each run, by name, what its scene has of its own",
-}
 MEANINGS = {
-    "@context": "of CSV on the Web (W3C)", "url": "name of the table",
-} | {f"notes[].{name}": meaning for name, meaning in NOTE.items()}  # fmt: skip
+    "@context": "of CSV on the Web (W3C)",
+    "url": "name of the table",
+    "notes[].recipe": "digest of the code, the options and all that the table is made of",
+    "notes[].versions": "version of each package that made it",
+    "notes[].engines": "the versions that each engine ran with, by the digest of its source",
+    "notes[].made_of": "names of the tables that it is made of",
+    "notes[].scene": "what the scenes of all runs have in common",
+    "notes[].runs": "of each run, by name, what its scene has of its own",
+}
 
 
 def beside(table: str | Path) -> Path:

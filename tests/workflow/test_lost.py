@@ -19,6 +19,10 @@ numerics: {accuracy: draft}
 topology: {crosshatch: [2], polygon: []}
 """
 FIGURE = "tiny/figures/topology.png"
+RULES = {
+    "warmup", "simulate", "capacity", "table", "ridge_best", "figure", "animation", "setup_claims",
+    "page",
+}  # fmt: skip
 COMMAND = (FIGURE, "--configfile", "tiny.yaml")
 
 
@@ -140,18 +144,21 @@ def test_a_job_that_fails_is_told_on_the_last_line(tiny, edited):
 
 @pytest.mark.slow
 def test_every_log_says_what_is_done_how_long_it_takes_and_what_was_chosen(tiny):
-    logs = [
-        path for out in ("tiny", "out") for path in (tiny.folder / out / "logs").rglob("*/*.log")
-    ]
-    assert {path.parent.name for path in logs} >= {
-        "warmup", "simulate", "capacity", "tables", "figures", "claims"
+    shown = "tiny/report/tables/described/topology.csv.html"
+    tiny.snakemake(shown, *COMMAND[1:])
+    assert "<td>kirchhoff</td>" in (tiny.folder / shown).read_text()
+    folders = [tiny.folder / out / "logs" for out in ("tiny", "out")]
+    logs = {path: folder for folder in folders for path in folder.rglob("*/*.log")}
+    assert {path.relative_to(folder).parts[0] for path, folder in logs.items()} == {
+        "warmup", "simulate", "capacity", "tables", "figures", "claims", "report"
     }  # fmt: skip
     for path in logs:
         lines = path.read_text().splitlines()
-        assert re.match(r"\w+: \w", lines[0]), path
+        rule, _, does = lines[0].partition(": ")
+        assert rule in RULES and re.match(r"\w", does), path
         (taken,) = [at for at, line in enumerate(lines) if re.match(r"takes: \w", line)]
         chosen = [line for line in lines[taken + 1 :] if re.match(r"\w[\w ]*: ?\S", line)]
-        assert chosen or path.parent.name == "warmup", path
+        assert chosen or rule == "warmup", path
         assert lines[-1].startswith("took "), path
 
 
