@@ -135,15 +135,20 @@ def test_sixteen_jobs_compile_into_one_folder_at_once(tmp_path):
 
 
 @one_way
-def test_sixteen_jobs_load_from_one_folder_at_once(undisturbed, tmp_path):
-    """Real ones, of the default engine."""
+def test_sixteen_jobs_compile_and_load_the_default_engine_at_once(undisturbed, tmp_path):
+    """Nothing is warned of, and what they compiled serves those that come later."""
+    tree, kept = undisturbed[1], tmp_path / "kernels"
     warm = "from fiberweb.engines import warmup; warmup('kirchhoff')"
-    jobs = [
-        subprocess.Popen(
-            [sys.executable, "-c", warm],
-            cwd=undisturbed[1].folder, env=undisturbed[1].environment, stderr=subprocess.PIPE,
-        )
-        for _ in range(16)
-    ]  # fmt: skip
-    assert [job.communicate()[1] for job in jobs] == [b""] * 16
-    assert {job.returncode for job in jobs} == {0}
+    indices = []
+    for _ in ("compiled", "loaded"):
+        jobs = [
+            subprocess.Popen(
+                [sys.executable, "-c", warm], cwd=tree.folder, stderr=subprocess.PIPE,
+                env=tree.environment | {"FIBERWEB_CACHE": str(kept)},
+            )
+            for _ in range(16)
+        ]  # fmt: skip
+        assert [job.communicate()[1] for job in jobs] == [b""] * 16
+        assert {job.returncode for job in jobs} == {0}
+        indices.append({file: file.stat().st_mtime_ns for file in kept.rglob("*.nbi")})
+    assert indices[0] and indices[0] == indices[1]

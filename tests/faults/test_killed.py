@@ -1,15 +1,17 @@
 """What is killed, Ctrl-C, two calls at once, and others that take the cores."""
 
+import contextlib
 import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import psutil
 import pytest
 
-from tests.faults.conftest import TARGET, finished
+from tests.faults.conftest import TARGET, TINY, finished
 
 STAGES = ("simulate", "capacity", "figures")
 RULES = ("simulate", "capacity", "figure")
@@ -44,7 +46,8 @@ def kill_all(tree, call, job):
 
 def interrupt(tree, call, job):
     os.killpg(call.pid, signal.SIGINT)
-    job.resume()
+    with contextlib.suppress(psutil.NoSuchProcess):  # where Snakemake itself was quicker to end it
+        job.resume()
     assert call.wait(timeout=600) != 0
     assert "Traceback" not in tree.said()
 
@@ -60,6 +63,24 @@ def test_what_is_killed_in_every_stage_goes_on(fresh, expected, end):
     assert [finished(fresh.said() + printed, rule) for rule in RULES] == [1, 1, 1]
     assert fresh.made() == expected
     assert "there is nothing to resume" in fresh.resume()
+
+
+def test_what_had_ended_well_is_not_done_again(fresh, expected):
+    """Of six runs at least one had, when all are killed."""
+    (fresh.folder / "tiny.yaml").write_text(TINY.replace("[2]", "[2, 3, 4, 5, 6, 7]"))
+    call = fresh.start()
+    while not finished(fresh.said()):
+        assert call.poll() is None, fresh.said()
+        time.sleep(0.01)
+    kill_all(fresh, call, fresh.job(call, "simulate"))
+    before = finished(fresh.said())
+    assert before < 6
+    printed = fresh.resume()
+    assert finished(printed) == 6 - before
+    made = fresh.made()
+    assert {
+        path: made[path] for path in expected if path.startswith("runs")
+    }.items() <= expected.items()
 
 
 def test_two_calls_at_once(fresh, expected):
