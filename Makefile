@@ -72,16 +72,16 @@ report: $(STAMP) ## figures, tables, claims and provenance as report.html and re
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
 
-test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons: half an hour
+test-anywhere: $(STAMP) ## odd folders, read-only clones, locales, other Pythons: 20 minutes
 	ANYWHERE=1 $(VENV)/bin/python -m pytest -rs tests/anywhere
 
-fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them broken
+fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them broken: 4 minutes
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) tests/fuzz --hypothesis-profile fuzz
 
-random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 11 minutes of CPU time
+random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 6 minutes
 	$(VENV)/bin/python -m fiberweb.tools.random_scenes
 
-test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: about 15 minutes
+test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: 35 minutes
 	FAULTS=1 $(VENV)/bin/python -m pytest --numprocesses $(CORES) -rs tests/faults
 
 test-slurm: $(STAMP_SLURM) ## the workflow through a SLURM on this machine: Debian, as root

@@ -84,7 +84,7 @@ def load(path: str | Path) -> xr.Dataset:
         with timed.part("read"), xr.open_dataset(path, engine="netcdf4") as data:
             if data.nbytes > of_this_machine():  # a file of some bytes may say so
                 raise ValueError(
-                    f"{path} holds {1e-9 * data.nbytes:.3g} GB, and this machine has "
+                    f"{path} holds {1e-9 * data.nbytes:.3g} GB, and a job here may take "
                     f"{1e-9 * of_this_machine():.3g} GB of memory; read it on a larger one"
                 )
             return unlabelled(data.load())

@@ -37,12 +37,12 @@ def needed(scene: Scene, elements_per_section: int | None) -> dict[str, float]:
 
 
 def check(scene: Scene, elements_per_section: int | None) -> None:
-    """Raise ValueError, one sentence, if a run needs more memory than this machine has."""
+    """Raise ValueError, one sentence, if a run needs more memory than it may take."""
     parts = needed(scene, elements_per_section)
     if (total := sum(parts.values())) > of_this_machine():
         largest = max(parts, key=parts.get)
         raise ValueError(
-            f"{largest} need some {1e-9 * total:.3g} GB of memory, and this machine has "
+            f"{largest} need some {1e-9 * total:.3g} GB of memory, and a job here may take "
             f"{1e-9 * of_this_machine():.3g} GB; take less of them"
         )
 

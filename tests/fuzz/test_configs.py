@@ -2,6 +2,8 @@
 what was looked at."""
 
 import json
+import subprocess
+import sys
 import time
 
 import pytest
@@ -24,7 +26,7 @@ TOKENS = [
     b"__use_yte__: true\n", b".inf", b".nan", b"1e999", b"0x_", b"2024-13-01", b"null", b"---\n",
     b"...\n", b"%YAML 1.1\n", b"\xef\xbb\xbf", b"\xc2\x85", b"~", b"=", b"recordings: [{path: x}]",
 ]  # fmt: skip
-SECONDS = 2.0  # of CPU time
+SECONDS, MEGABYTES = 2.0, 500  # of CPU time, and of memory in all
 SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20)
 ANYTHING = st.recursive(
     SCALARS,
@@ -32,6 +34,23 @@ ANYTHING = st.recursive(
     max_leaves=12,
 )
 SMALL = [values(path) for path in SMOKE]
+# in a process of its own, which has what a call has
+ALL_REFUSED = """
+import resource, sys
+from fiberweb.config import load
+from fiberweb.recorded import recorded
+from fiberweb.runs import run_table
+for path in sys.argv[3:]:
+    try:
+        config = load(*sys.argv[1:3], path)
+        recorded(config.recordings)
+        for run in run_table(config).values():
+            run.check_request()
+    except ValueError:
+        continue
+    sys.exit(path)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
 KEYS = [*sorted(LEAVES), ("results",), ("published_tables",)]
 KEYS += [("recordings", name) for name in ("path", "name", "read", "card")]
 
@@ -62,6 +81,16 @@ def test_a_hostile_config_is_refused_with_the_limit_that_it_hit(tmp_path, conten
     assert time.process_time() - start < SECONDS
     assert is_one_sentence(caught.value)
     assert all(word in str(caught.value) for word in words), str(caught.value)
+
+
+def test_none_of_them_takes_much_memory(tmp_path):
+    for name, (content, _) in HOSTILE.items():
+        (tmp_path / name).write_bytes(content)
+    files = [*SMOKE, *sorted(tmp_path.iterdir())]
+    child = [sys.executable, "-c", ALL_REFUSED, *files]
+    done = subprocess.run(child, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < MEGABYTES
 
 
 @CASES

@@ -12,8 +12,12 @@ from tests.workflow.conftest import Tree
 
 SMOKE = ("figures", "--configfile", "config/smoke.yaml")
 LARGE = "topology: {crosshatch: [8, 9, 10, 11], polygon: []}"
-# without accounting, and with the environment of the caller as everywhere
-SLURM = ("--profile", "profiles/slurm", "--slurm-status-command", "squeue")
+# without accounting, asked how jobs are every 5 s instead of 40, and with the environment of the
+# caller as everywhere
+SLURM = (
+    "--profile", "profiles/slurm", "--slurm-status-command", "squeue",
+    "--slurm-init-seconds-before-status-checks", "5",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -113,7 +117,6 @@ def test_two_jobs_at_once_are_faster_and_more_than_cores_are_not(cluster, tree):
         call, printed = through_slurm(
             tree, f"by-{jobs}/tables/described/topology.csv", "--configfile", "large.yaml",
             "--config", f"results=by-{jobs}", "--jobs", str(jobs), "--group-components", "runs=1",
-            "--seconds-between-status-checks", "5",
         )  # fmt: skip
         assert call.wait() == 0, printed.read_text()
         seconds[jobs] = time.monotonic() - begun
