@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from datetime import date
 from pathlib import Path
 
 from fiberweb.arguments import shown
-from fiberweb.untrusted import called, check_entry, values
+from fiberweb.untrusted import called, check_entry, other_base, values
 
 
 def read(path: str | Path) -> Mapping:
@@ -25,14 +25,14 @@ def read(path: str | Path) -> Mapping:
     return held
 
 
-def check_call(arguments: Sequence[str]) -> None:
-    """Raise ValueError, one sentence, if ``--config`` gives a key twice.
+def check_call() -> None:
+    """Raise ValueError, one sentence, if ``--config`` of this call of Snakemake gives a key twice.
 
     Of ``--config 'scene={duration: 20, duration: 30}'`` Snakemake would keep the last one. Groups
     given in two parts are one group.
     """
     given = set()
-    for entry in called(arguments).config:
+    for entry in called().config or ():
         check_entry(entry)
         for key in _keys(entry):
             if key in given:
@@ -77,13 +77,17 @@ def _typed(value):
         return [_typed(each) for each in value]
     if not isinstance(value, str):
         return value
+    if other_base(value):
+        return value
+    loader = yaml.SafeLoader("")
+    kind = loader.resolve(yaml.ScalarNode, value, (True, False))
     try:
-        read = yaml.safe_load(value)
-    except yaml.YAMLError:
+        read = loader.construct_object(yaml.ScalarNode(kind, value))
+    except (ValueError, OverflowError):  # 2024-99-99, or thousands of digits
         return value
     if isinstance(read, str) and is_number(read):
         return float(read)  # 1e3, which YAML takes for text
-    return value if isinstance(read, (Mapping, list, date)) else read
+    return value if isinstance(read, date) else read
 
 
 def _keys(entry: str) -> Iterator[str]:

@@ -11,34 +11,45 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import re
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 MOST_BYTES = 256 * 1024  # of a file; config.yaml has 8 kB
 MOST_VALUES = 10_000  # keys, values and groups of a file, each alias counted as what it stands for
 DEEPEST = 20  # groups and lists within one another
+IN_DECIMALS = "write it in decimals or, if it is a text, in quotes"
 PYTHON = "__use_yte__"  # has Snakemake run what stands in a file
 
 
-def guard(arguments: Sequence[str]) -> None:
-    """End the program with one sentence if what a call of Snakemake names as config is refused."""
+def guard() -> None:
+    """End the program with one sentence if what this call of Snakemake names as config is
+    refused."""
     try:
-        given = called(arguments)
-        for path in given.configfile:
-            values(path)
-        for entry in given.config:
+        given = called()
+        for path in given.configfile or ():
+            if not isinstance(values(path), dict):
+                raise ValueError(f"{_printable(path)} holds no keys: a config is a group of keys")
+        for entry in given.config or ():
             check_entry(entry)
     except ValueError as error:
         sys.exit(str(error))
 
 
-def called(arguments: Sequence[str]) -> argparse.Namespace:
-    """What a call of Snakemake gives as config: ``configfile``, paths, and ``config``, entries."""
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--configfile", "--configfiles", nargs="+", action="extend", default=[])
-    parser.add_argument("--config", "-C", nargs="*", action="extend", default=[])
-    return parser.parse_known_args(arguments[1:])[0]
+def called() -> argparse.Namespace:
+    """What Snakemake, within which this runs, has read of its command line: ``configfile``, paths,
+    ``config``, entries, and the rest.
+
+    Its own parser alone knows options that are abbreviated or written in one (``-nC``), and takes
+    .3 s to be made once more; so what it gave is looked for in the frames of Snakemake's functions.
+    """
+    frame = sys._getframe()
+    while frame:
+        found = frame.f_locals.get("args")
+        if isinstance(found, argparse.Namespace) and hasattr(found, "configfile"):
+            return found
+        frame = frame.f_back
+    raise RuntimeError("no call of Snakemake's command line is at work")
 
 
 def values(path: str | Path) -> object:
@@ -49,7 +60,7 @@ def values(path: str | Path) -> object:
     """
     import yaml
 
-    text = _text(Path(path))
+    text, path = _text(Path(path)), _printable(path)
     check(text, path)
     try:
         return json.loads(text)
@@ -69,6 +80,17 @@ def check_entry(entry: str) -> None:
     name, _, text = entry.partition("=")
     with contextlib.suppress(yaml.YAMLError):  # what is none is text to Snakemake, too
         _Look("--config", (name,)).through(text)
+
+
+def other_base(text: str) -> str | None:
+    """How YAML takes a bare text for a number that is not in decimals, if it does: 1:30 for 90, 010
+    for 8. Whoever writes these means something else, and long ones take YAML seconds."""
+    if re.fullmatch(r"[-+]?[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?", text):
+        return "to the base of 60"
+    bases = {"0x": "as hexadecimal", "0b": "as binary"}
+    if re.fullmatch(r"[-+]?0(x[0-9a-fA-F_]+|b[01_]+|[0-7_]+)", text):
+        return bases.get(text.lstrip("+-")[:2], "as octal")
+    return None
 
 
 def check(text: str, name: str | Path) -> None:
@@ -129,6 +151,8 @@ class _Look:
                 self._place(group.values, group.height, group.anchor)
             elif isinstance(event, yaml.ScalarEvent):
                 self._count(1, 0)
+                if event.implicit[0] and (reads := other_base(event.value)):
+                    self._refuse(f"has {event.value[:40]}, which YAML reads {reads}", IN_DECIMALS)
                 self._scalar(event.value)
                 self._place(1, 0, event.anchor, event.value)
             elif isinstance(event, yaml.AliasEvent):
@@ -179,13 +203,18 @@ class _Look:
         raise ValueError(f"{self._name} {what}{where}: {remedy}")
 
 
-def _text(path: Path) -> str:
+def _printable(path: str | Path) -> str:
+    return str(path) if str(path).isprintable() else repr(str(path))
+
+
+def _text(file: Path) -> str:
     """The text of a file; ValueError, one sentence, if there is none or too much."""
-    if not path.is_file():  # opening a pipe would wait for ever
+    path = _printable(file)
+    if not file.is_file():  # opening a pipe would wait for ever
         raise ValueError(f"{path} is no file: name a config file that is there")
     try:
-        with path.open("rb") as file:
-            content = file.read(MOST_BYTES + 1)
+        with file.open("rb") as opened:
+            content = opened.read(MOST_BYTES + 1)
     except OSError as error:
         raise ValueError(
             f"{path} cannot be read ({error.strerror}): name a config file that can"

@@ -4,6 +4,7 @@ import pytest
 
 from fiberweb.config import load
 from fiberweb.layers import check_call, read, typed
+from tests.workflow.conftest import within_a_call
 
 TWICE = {
     "yaml": ("scene:\n  duration: 20\n  seed: 1\n  duration: 30\n", "scene.duration", "2 and 4"),
@@ -53,6 +54,8 @@ def test_what_is_no_yaml_is_one_sentence(tmp_path, text):
         ("20", 20), ("2.5", 2.5), ("1e-3", 1e-3), ("1.0e+8", 1e8), (".inf", float("inf")),
         ("true", True), ("null", None), ("", None), ("clamped", "clamped"),
         ("2024-01-01", "2024-01-01"), ("{a", "{a"),
+        ("2024-99-99", "2024-99-99"), ("[" * 3000, "[" * 3000), ("1:30", "1:30"), ("010", "010"),
+        ("1" + ":1" * 2000 + ".0", "1" + ":1" * 2000 + ".0"), ("9" * 5000, "9" * 5000),
     ],
 )  # fmt: skip
 def test_what_the_command_line_gives_within_a_group_is_what_a_file_would(text, value):
@@ -66,15 +69,16 @@ def test_what_the_command_line_gives_within_a_group_is_what_a_file_would(text, v
     [
         (["--config", "scene={seed: 1, seed: 2}"], "scene.seed"),
         (["-C", "results=a", "scene={seed: 1}", "scene={seed: 2}", "--dry-run"], "scene.seed"),
-        (["--config=results=a", "-C", "results=b"], "results"),
+        (["-nC", "results=a", "results=b"], "results"),
         (["--config", "setups={published: {ends: null, 'ends': pinned}}"], "setups.published.ends"),
     ],
 )
 def test_a_key_given_twice_on_the_command_line_is_refused(call, key):
     with pytest.raises(ValueError, match=rf"--config gives {key} twice: keep one of them"):
-        check_call(["snakemake", "figures", *call])
+        within_a_call(check_call, ["figures", *call])
 
 
 def test_groups_in_parts_and_other_options_are_no_key_twice():
     call = ["--config", "scene={seed: 1}", "scene={duration: 2}", "results={a", "n=[1, 1]"]
-    check_call(["snakemake", *call, "--set-threads", "simulate=2", "--set-resources", "simulate=2"])
+    others = ("--set-threads", "simulate=2", "--set-resources", "simulate:mem_mb=2")
+    within_a_call(check_call, [*call, *others])

@@ -9,6 +9,7 @@ import pytest
 
 from fiberweb.untrusted import guard
 from tests.fuzz.hostile import HOSTILE, LAUGHS
+from tests.workflow.conftest import within_a_call
 
 ROOT = Path(__file__).parents[2]
 SECONDS, MEGABYTES = 2.0, 500  # of CPU time beyond a call that does nothing, and in all
@@ -28,12 +29,12 @@ sys.exit(ended.returncode)
 """
 
 
-def called(folder, *options):
+def called(folder, *options, snakefile=("--snakefile", ROOT / "Snakefile")):
     """What a dry run from another folder that has to fail prints, and its CPU time (s) and memory
     (MB)."""
     command = [sys.executable, "-m", "snakemake", "topology", "-n", "--cores", "1"]
     done = subprocess.run(
-        [sys.executable, "-c", USED, *command, "--snakefile", ROOT / "Snakefile", *options],
+        [sys.executable, "-c", USED, *command, *snakefile, *options],
         cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
@@ -63,6 +64,16 @@ def test_a_file_is_refused_before_it_is_read(tmp_path, start, content, words):
     assert megabytes < MEGABYTES and seconds < start + SECONDS, (megabytes, seconds)
 
 
+def test_options_in_one_and_a_linked_snakefile_hide_nothing(tmp_path):
+    (tmp_path / "my.yaml").write_bytes(OBEYED)
+    text, _, _ = called(tmp_path, "--configfile", "my.yaml", snakefile=[f"-ns{ROOT}/Snakefile"])
+    assert "has __use_yte__" in text and not (tmp_path / "harm").exists()
+    (tmp_path / "Snakefile").symlink_to(ROOT / "Snakefile")
+    (tmp_path / "profiles").symlink_to(ROOT / "profiles")
+    text, _, _ = called(tmp_path, "--configfile", "my.yaml", snakefile=[])
+    assert "has __use_yte__" in text and not (tmp_path / "harm").exists()
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
@@ -70,6 +81,13 @@ def test_a_file_is_refused_before_it_is_read(tmp_path, start, content, words):
         (["-n", "--configfiles", "missing.yaml"], "missing.yaml is no file"),
         (["--configfile=bomb.yaml", "--", "figures"], "10000 keys and values"),
         (["-C", f"scene={{{LAUGHS.decode().replace(chr(10), ', ')}}}"], "--config holds more than"),
+        (["-nC", "scene=" + "[" * 100], "--config has more than 20 groups"),
+        (
+            ["-pkC", "scene={seed: 0x10}"],
+            "0x10, which YAML reads as hexadecimal: write",
+        ),
+        (["--configfile", "empty.yaml"], "empty.yaml holds no keys"),
+        (["--configfile", "no\nsuch.yaml"], r"'no\nsuch.yaml' is no file"),
         (["--config", "results=x", "scene=" + "[" * 100], "--config has more than 20 groups"),
         (["--config", "scene={seed: !!int 1}"], "--config has the tag"),
         (["--config", "a={b: &x {c: 1}, d: *x, b: 2}"], "--config gives a.b twice: keep"),
@@ -78,12 +96,14 @@ def test_a_file_is_refused_before_it_is_read(tmp_path, start, content, words):
 def test_a_call_in_any_spelling(tmp_path, monkeypatch, call, words):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bomb.yaml").write_bytes(LAUGHS)
+    (tmp_path / "empty.yaml").write_text("# nothing\n")
     with pytest.raises(SystemExit) as caught:
-        guard(["snakemake", "topology", *call])
+        within_a_call(guard, ["topology", *call])
     assert words in str(caught.value.code)
 
 
 def test_an_honest_call_passes(tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
-    guard(["snakemake", "topology", "--configfile", "config/smoke.yaml", "config/config.yaml"])
-    guard(["snakemake", "--config", "results=a", "scene={seed: 1}", "published_all=True", "-n"])
+    within_a_call(guard, ["topology", "--configfile", "config/smoke.yaml", "config/config.yaml"])
+    config = ("results=a", "scene={seed: 1}", "published_all=True")
+    within_a_call(guard, ["--config", *config, "-n"])

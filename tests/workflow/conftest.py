@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,19 @@ def dry_run(tree, arguments):
     from snakemake.cli import main
 
     main()
+
+
+@cache
+def snakemakes_parser():
+    from snakemake.cli import get_argument_parser
+
+    return get_argument_parser()
+
+
+def within_a_call(function, call):
+    """What a function returns within Snakemake's own, which have read a command line."""
+    args = snakemakes_parser().parse_known_args(call)[0]
+    return function(), args
 
 
 class Tree:

@@ -71,7 +71,7 @@ try:
     RECORDED = recorded(CONFIG.recordings)
     BROKEN = {}
     if workflow.is_main_process:  # a job on a cluster need not check again
-        check_call(sys.argv)
+        check_call()
         check_folders(CONFIG)
         BROKEN = broken(RESULTS, READ_ALL in os.environ)
         check(run for run in RUNS.values() if not Path(FILES.of_run(run, "response.nc")).exists())
