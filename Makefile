@@ -18,8 +18,8 @@ VENV_SLURM := .venv-slurm
 STAMP_SLURM := $(VENV_SLURM)/.installed
 VENV_REPORT := .venv-report
 STAMP_REPORT := $(VENV_REPORT)/.installed
-AUTHORS := $(if $(TABLES),--config published_tables=$(TABLES))
-LAID := $(if $(CONFIG),--configfile $(CONFIG)) $(AUTHORS)
+AUTHORS := $(if $(TABLES),--config 'published_tables=$(TABLES)')
+LAID := $(if $(CONFIG),--configfile '$(CONFIG)') $(AUTHORS)
 
 # what the workflow starts as `python` is the one in .venv
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
@@ -45,7 +45,7 @@ published: $(STAMP) ## the same, set up as the authors' code was
 	$(SNAKEMAKE) published --cores $(CORES) $(AUTHORS)
 
 published_all: $(STAMP) ## the same with every run of the authors: for a cluster, or a night
-	$(SNAKEMAKE) published --cores $(CORES) --config published_all=True $(TABLES:%=published_tables=%)
+	$(SNAKEMAKE) published --cores $(CORES) --config published_all=True $(if $(TABLES),'published_tables=$(TABLES)')
 
 docs: $(STAMP) ## the tables of numbers in docs/, from results/tables
 	$(VENV)/bin/python -m fiberweb.tools.docs
@@ -65,9 +65,9 @@ smoke: $(STAMP) ## every figure from small, short runs, about two minutes
 report: $(STAMP) ## figures, tables, claims and provenance as report.html and report.zip in results/
 	$(SNAKEMAKE) $(SHOWN) --cores $(CORES) $(LAID)
 	$(SNAKEMAKE) $(SHOWN) $(LAID) --report-stylesheet workflow/report/style.css \
-	    --report $(REPORT).html
+	    --report '$(REPORT).html'
 	$(SNAKEMAKE) $(SHOWN) $(LAID) --report-stylesheet workflow/report/style.css \
-	    --report $(REPORT).zip
+	    --report '$(REPORT).zip'
 
 test: $(STAMP) ## the tests
 	$(VENV)/bin/python -m pytest --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
@@ -94,10 +94,10 @@ test-report: smoke $(STAMP_REPORT) ## report in Chromium, metadata by their own 
 	PYTHONPATH=. $(VENV_REPORT)/bin/python -m pytest --confcutdir tests/report tests/report
 
 reproduce: $(STAMP) ## one run again from its own file, compared: make reproduce RUN=name-or-file
-	$(VENV)/bin/python -m fiberweb.tools.reproduce $(RUN)
+	$(VENV)/bin/python -m fiberweb.tools.reproduce $(if $(RUN),'$(RUN)')
 
 crate: $(STAMP_REPORT) ## results as a Workflow Run RO-Crate, described by ro-crate-metadata.json
-	PYTHONPATH=. $(VENV_REPORT)/bin/python -m fiberweb.tools.crate $(or $(RESULTS),results)
+	PYTHONPATH=. $(VENV_REPORT)/bin/python -m fiberweb.tools.crate '$(or $(RESULTS),results)'
 
 certificates: $(STAMP) ## whom certificates accuse: 236 scenes, over an hour
 	$(VENV)/bin/python -m fiberweb.tools.certificates

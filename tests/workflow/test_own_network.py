@@ -1,5 +1,6 @@
 """docs/own-network.md does what it says."""
 
+import ast
 import re
 
 import matplotlib as mpl
@@ -27,6 +28,8 @@ def names(tmp_path_factory):
         patch.chdir(folder)
         mpl.use("agg")
         for block in blocks("python"):
+            for statement in ast.parse(block).body:  # as if typed, where an indented one would
+                assert not hasattr(statement, "body")  # need a line without anything after it
             exec(block, names)
     return names | {"folder": folder}
 
