@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from fiberweb.model.scene import NotNegative, Positive
 from fiberweb.recordings import READERS
@@ -39,3 +39,10 @@ class Reading(Section):
     hidden: Literal["refuse", "leave out"] = key(
         "refuse", "what a marker with a longer gap means: the file is refused, or it is left out"
     )
+
+    @field_validator("markers")
+    @classmethod
+    def _some_marker(cls, markers):
+        if markers is not None and not markers:
+            raise ValueError(f"markers = {markers!r} names none: name one, or leave markers out")
+        return markers
