@@ -107,6 +107,14 @@ REFUSED = {
     "markers by a path": (
         lambda p: p, {"markers": "a[99999999999999]"}, ["markers = 'a[99999999999999]': a table"],
     ),
+    "huge input": (
+        lambda p: cells(p, 5, lambda c: [c[0], "-1e300", *c[2:]]), {},
+        ["column 'input', row 5: -1e+300 is beyond 1e+100 in magnitude"],
+    ),
+    "huge marker": (
+        lambda p: cells(p, 7, lambda c: [*c[:3], "1e101", *c[4:]]), {},
+        ["column 'a.y', row 7: 1e+101 is beyond 1e+100 in magnitude"],
+    ),
     "another rate": (lambda p: p, {"rate": 60.0}, ["at 50 Hz, but rate = 60 Hz"]),
     "a clock that stops": (
         lambda p: cells(p, 9, lambda c: ["", *c[1:]]), {}, ["column 'time', row 9: the time is mi"],
