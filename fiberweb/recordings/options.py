@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
+from pydantic_core import PydanticCustomError
 
 from fiberweb.model.scene import NotNegative, Positive
 from fiberweb.recordings import READERS
@@ -44,5 +45,5 @@ class Reading(Section):
     @classmethod
     def _some_marker(cls, markers):
         if markers is not None and not markers:
-            raise ValueError(f"markers = {markers!r} names none: name one, or leave markers out")
+            raise PydanticCustomError("no_marker", "name at least one marker, or leave it out")
         return markers

@@ -136,7 +136,7 @@ def test_what_cannot_be_read_is_one_sentence(tmp_path, made, damage, options, wo
 
 @pytest.mark.parametrize("markers", [{}, ""])
 def test_no_marker_at_all_is_one_sentence(tmp_path, made, markers):
-    with pytest.raises(ValueError, match=f"^markers = {markers!r} names none: name one, or leave"):
+    with pytest.raises(ValueError, match=f"^markers = {markers!r}: name at least one marker"):
         read_recording(csv(tmp_path, made), quiet=True, markers=markers)
 
 

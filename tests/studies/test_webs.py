@@ -28,4 +28,4 @@ def test_a_name_that_no_table_can_hold_is_one_sentence(name):
     with pytest.raises(ValidationError) as caught:
         webs.WebSection(name=name, fibres=FIBRES)
     text = sentence(caught.value)
-    assert text.isprintable() and text.startswith(f"webs.networks.name = {name!r}: give a name")
+    assert text.isprintable() and text.startswith(f"name = {name!r}: give a name")

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from fiberweb.errors import brief
 from fiberweb.model.network import Network, web
 from fiberweb.model.scene import Finite
 from fiberweb.sections import Positive, Section, Some, key
@@ -15,11 +15,10 @@ from fiberweb.studies.base import Figure, Lab, Point, Table, every, input_baseli
 
 
 def _legible(name: str) -> str:
-    """A name that a table and a figure can show; ValueError, one sentence, for any other."""
+    """A name that a table and a figure can show."""
     if name != name.strip() or not name.isprintable():
-        raise ValueError(
-            f"webs.networks.name = {brief(name)}: give a name without control characters, and "
-            "without blanks at its ends"
+        raise PydanticCustomError(  # its sentence begins with the key and the value
+            "name", "give a name without control characters, and without blanks at its ends"
         )
     return name
 
