@@ -10,6 +10,7 @@ import pandas as pd
 # Rows are put in this order, so that a table does not depend on the order in which runs end.
 SORTED_BY = ("setup", "topology", "n", "spacing_m", "force_N", "tension_N", "run", "target", "at")
 FLOAT_FORMAT = "%.10g"
+TEXT = {"name": str}  # of a network, as its user calls it: "007" as well
 
 
 def write(frame: pd.DataFrame, path: str | Path) -> None:
@@ -25,7 +26,7 @@ def write(frame: pd.DataFrame, path: str | Path) -> None:
 
 def read(path: str | Path) -> pd.DataFrame:
     """The table that `write` wrote; an empty cell is NaN."""
-    return pd.read_csv(path)
+    return pd.read_csv(path, dtype=TEXT, keep_default_na=False, na_values=[""])  # "NA" is text
 
 
 def ordered(frame: pd.DataFrame) -> pd.DataFrame:

@@ -37,6 +37,12 @@ def test_read_returns_what_was_written(tmp_path):
     pd.testing.assert_frame_equal(again, TABLE, rtol=1e-9, check_dtype=False)
 
 
+def test_the_name_of_a_network_is_text(tmp_path):
+    tables.write(pd.DataFrame({"name": ["NA", "007"], "n": [2, np.nan]}), tmp_path / "webs.csv")
+    again = tables.read(tmp_path / "webs.csv")
+    assert again["name"].tolist() == ["NA", "007"] and again["n"].isna().tolist() == [False, True]
+
+
 def test_equal_rows_keep_their_order():
     frame = pd.DataFrame({"n": [4, 2, 4], "choice": ["b", "a", "a"]})
     assert tables.ordered(frame)["choice"].tolist() == ["a", "b", "a"]

@@ -43,15 +43,15 @@ def draw(card: Mapping, path: str | Path) -> Figure:
     """Draw a card, as `fiberweb.scoring.card.Card.as_dict` has it; one that was refused has its
     sentence alone."""
     with style.applied():
-        said = [fill(card["verdict"], WIDTH - 18)] + [
-            fill(note, WIDTH + 10) for note in card["notes"]
+        said = [_filled(card["verdict"], WIDTH - 18)] + [
+            _filled(note, WIDTH + 10) for note in card["notes"]
         ]
         if card["status"] != "ok":
             figure = style.figure(style.DOUBLE, 30.0)
             figure.text(0.01, 0.9, said[0], va="top")
             style.save(figure, path)
             return figure
-        said.append(fill(_about(card["facts"]), WIDTH + 10))
+        said.append(_filled(_about(card["facts"]), WIDTH + 10))
         defined = fill(DEFINED, WIDTH + 14)
         above, below = _height(said), _height([defined])
         figure = style.figure(style.DOUBLE, above + 104.0 + below)
@@ -79,6 +79,11 @@ def draw(card: Mapping, path: str | Path) -> Figure:
         _table(middle.subplots(), scores)
         style.save(figure, path)
     return figure
+
+
+def _filled(text: str, width: int) -> str:
+    """A sentence in lines; the names of files in it may have dollars."""
+    return style.verbatim(fill(text, width))
 
 
 def _about(facts: Mapping) -> str:

@@ -113,6 +113,11 @@ def lettered(name: str, title: str) -> str:
     return rf"$\mathbf{{{name}}}$   {title}"
 
 
+def verbatim(text: str) -> str:
+    """Text of a user's as it stands: matplotlib takes what is between two dollars for a formula."""
+    return text.replace("$", r"\$")
+
+
 def letter(part: FigureBase, name: str, title: str) -> None:
     """Panel letter and title at the upper left of a figure or subfigure."""
     part.suptitle(lettered(name, title), x=0.005, ha="left", fontsize=RC["figure.titlesize"])

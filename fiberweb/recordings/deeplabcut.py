@@ -24,6 +24,7 @@ def read(path: Path, options: Reading) -> Raw:
     Raises:
         ValueError: one sentence with file, column and row.
     """
+    texts.refuse_markers(path, options)
     text = texts.sniff(path)
     rows = [[cell.strip() for cell in row] for row in text.lines[:HEADER]]
     if [row[0] for row in rows if row] != ["scorer", "bodyparts", "coords"]:

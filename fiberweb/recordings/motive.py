@@ -28,6 +28,7 @@ def read(path: Path, options: Reading) -> Raw:
     Raises:
         ValueError: one sentence with file, column and row.
     """
+    texts.refuse_markers(path, options)
     text = texts.sniff(path)
     facts = dict(zip(text.lines[0][::2], text.lines[0][1::2], strict=False))
     rows = {row[1].strip(): row for row in text.lines[1:8] if len(row) > 1 and row[1].strip()}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
+from pydantic_core import PydanticCustomError
 
 from fiberweb.model.scene import NotNegative, Positive
 from fiberweb.recordings import READERS
@@ -39,3 +40,10 @@ class Reading(Section):
     hidden: Literal["refuse", "leave out"] = key(
         "refuse", "what a marker with a longer gap means: the file is refused, or it is left out"
     )
+
+    @field_validator("markers")
+    @classmethod
+    def _some_marker(cls, markers):
+        if markers is not None and not markers:
+            raise PydanticCustomError("no_marker", "name at least one marker, or leave it out")
+        return markers

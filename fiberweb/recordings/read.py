@@ -19,6 +19,7 @@ from fiberweb.recordings import READERS, checks, clock
 from fiberweb.recordings.base import FINDING, LENGTHS, Finding, driven, head
 from fiberweb.recordings.options import Reading
 
+MOST = 1e100  # of an input or a position: a card has their powers, and sums of these
 VARIABLES = {
     "time": ("time from the first frame", "s"),
     "input": "input, in the file's own unit",
@@ -61,6 +62,7 @@ def _read(path: Path, quiet: bool, options: dict) -> xr.Dataset:
     found = list(raw.findings)
     time, rate, more = clock.frames(raw, chosen, path)
     found += more
+    _check_magnitudes(raw, path)
     _take_input(raw, chosen, path)
     column = raw.columns.get("input", chosen.input or "input")
     if np.nanmin(raw.input) == np.nanmax(raw.input):
@@ -135,6 +137,21 @@ def _reader(path: Path, options: Reading):
     raise ValueError(
         f"{path} is of no format that is known: say format: {', '.join(READERS)}, or export a CSV"
     )
+
+
+def _check_magnitudes(raw, path: Path) -> None:
+    """Raise ValueError, one sentence, for a value whose third power may not be held."""
+    columns = {} if raw.input is None else {raw.columns.get("input", "input"): raw.input}
+    for number, name in enumerate(raw.names):
+        columns |= {f"{name}.{axis}": raw.positions[:, number, n] for n, axis in enumerate(AXES)}
+    for name, values in columns.items():
+        wrong = np.isfinite(values) & (np.abs(values) > MOST)  # infinity counts as not seen
+        if wrong.any():
+            at = int(np.argmax(wrong))
+            raise ValueError(
+                f"{path}, column {name!r}, {raw.place(at)}: {values[at]:g} is beyond {MOST:g} in "
+                "magnitude: correct it, or give the column in another unit"
+            )
 
 
 def _take_input(raw, options: Reading, path: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fiberweb.errors import brief
 from fiberweb.recordings import READERS
 from fiberweb.recordings import text as texts
 from fiberweb.recordings.base import Raw, driven
@@ -37,6 +38,7 @@ def read(path: Path, options: Reading) -> Raw:
     wanted = {column: texts.find(text, header, column, "markers") for p in pairs.values()
               for column in p}  # fmt: skip
     given = options.input or "input"
+    _check_roles(text, clock, given, pairs)
     own_column = given in header or not driven(given, list(pairs), "xy")
     if own_column:
         wanted[given] = texts.find(text, header, given, "input")
@@ -46,15 +48,28 @@ def read(path: Path, options: Reading) -> Raw:
     time, drive = columns.pop(clock, None), columns.pop(given) if own_column else None
     places = [(n, axis, c) for n, pair in enumerate(pairs.values()) for axis, c in enumerate(pair)]
     positions = np.empty((len(columns[places[0][2]]), len(pairs), 2))
-    for at, (number, axis, column) in enumerate(places):
+    for number, axis, column in places:
         positions[:, number, axis] = columns[column]
-        if column not in {later for *_, later in places[at + 1 :]}:
-            del columns[column]  # of ten million rows, each is 80 MB
+        del columns[column]  # of ten million rows, each is 80 MB
     return Raw(
         positions, list(pairs), drive, time, findings=text.findings, first_row=first_row,
         time_unit=TIMES.get((clock or "").lower()),
         columns={"time": clock or "time", "input": given},
     )  # fmt: skip
+
+
+def _check_roles(text, clock: str | None, given: str, pairs: dict[str, list[str]]) -> None:
+    """Raise ValueError, one sentence, if a column is to be two things."""
+    roles = [(clock, "the time"), (given, "the input")]
+    for name, pair in pairs.items():
+        roles += [(column, f"{axis} of marker {name!r}") for column, axis in zip(pair, "xy")]
+    taken = {}
+    for column, role in roles:
+        if (first := taken.setdefault(column, role)) != role:
+            raise ValueError(
+                f"{text.path}: column {column!r} would be {first} and {role}: give each a column "
+                "of its own"
+            )
 
 
 def _pairs(text, header: list[str], options: Reading, taken: set) -> dict[str, list[str]]:
@@ -64,6 +79,11 @@ def _pairs(text, header: list[str], options: Reading, taken: set) -> dict[str, l
             if len(pair) != 2:
                 raise ValueError(f"{text.path}: markers: {name} = {pair}: give two columns, [x, y]")
         return options.markers
+    if options.markers is not None:
+        raise ValueError(
+            f"{text.path}: markers = {brief(options.markers)}: a table has no paths: give {{name: "
+            "[column of x, column of y]}, or leave it out"
+        )
     free = [name for name in header if name not in taken]
     pairs = {}
     for mark in "_. ":

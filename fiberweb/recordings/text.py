@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from fiberweb.errors import unknown_key
+from fiberweb.errors import brief, unknown_key
 from fiberweb.recordings.base import Finding, check_size, head
+from fiberweb.recordings.options import Reading
 
 ROWS, CELLS = 200_000, 10_000_000  # held as text at once
 MOST_COLUMNS = 20_000
@@ -117,6 +118,15 @@ def find(text: Text, header: list[str], name: str, key: str) -> int:
             f"{', '.join(str(n + 1) for n in found)}: give each a name of its own"
         )
     raise ValueError(f"{text.path}: {key}: {unknown_key(name, header, kind='column')}")
+
+
+def refuse_markers(path: Path, options: Reading) -> None:
+    """Raise ValueError, one sentence, if markers are named for a file that names them itself."""
+    if options.markers is not None:
+        raise ValueError(
+            f"{path}: markers = {brief(options.markers)}: a file of this format names its markers "
+            "itself: leave it out"
+        )
 
 
 def duplicated(names: Iterable[str]) -> list[str]:

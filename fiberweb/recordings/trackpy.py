@@ -26,6 +26,7 @@ def read(path: Path, options: Reading) -> Raw:
     Raises:
         ValueError: one sentence with file, column and row.
     """
+    texts.refuse_markers(path, options)
     text = texts.sniff(path)
     header = [cell.strip() for cell in text.lines[0]]
     wanted = {name: texts.find(text, header, name, "markers") for name in COLUMNS}

@@ -53,3 +53,10 @@ def test_a_recording_that_was_refused_has_its_sentence(tmp_path):
                            tmp_path / "card.png")  # fmt: skip
     assert said(figure) == "film.csv is empty"
     assert_written(tmp_path / "card.png")
+
+
+def test_dollars_in_the_name_of_a_file_are_no_formula(tmp_path):
+    verdict = "cost $x^{ y$.csv is empty"
+    card.draw({"status": "refused", "verdict": verdict, "notes": []}, tmp_path / "card.png")
+    assert_written(tmp_path / "card.png")
+    card.draw(made(run="cost $x^{ y$"), tmp_path / "card.png")

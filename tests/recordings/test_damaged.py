@@ -90,6 +90,31 @@ REFUSED = {
         {}, ["column 'time' steps by 20", "time_unit: ms if this is 50 Hz"],
     ),
     "no such column": (lambda p: p, {"input": "servoo"}, ["input: unknown column 'servoo'"]),
+    "input is the time": (
+        lambda p: p, {"input": "time"}, ["column 'time' would be the time and the input: give"],
+    ),
+    "time is the input": (
+        lambda p: p, {"time": "input"}, ["column 'input' would be the time and the input: give"],
+    ),
+    "marker of time": (
+        lambda p: p, {"markers": {"b": ["time", "input"]}},
+        ["column 'time' would be the time and x of marker 'b': give"],
+    ),
+    "x and y of one column": (
+        lambda p: p, {"markers": {"a": ["a_x", "a_x"]}},
+        ["column 'a_x' would be x of marker 'a' and y of marker 'a': give"],
+    ),
+    "markers by a path": (
+        lambda p: p, {"markers": "a[99999999999999]"}, ["markers = 'a[99999999999999]': a table"],
+    ),
+    "huge input": (
+        lambda p: cells(p, 5, lambda c: [c[0], "-1e300", *c[2:]]), {},
+        ["column 'input', row 5: -1e+300 is beyond 1e+100 in magnitude"],
+    ),
+    "huge marker": (
+        lambda p: cells(p, 7, lambda c: [*c[:3], "1e101", *c[4:]]), {},
+        ["column 'a.y', row 7: 1e+101 is beyond 1e+100 in magnitude"],
+    ),
     "another rate": (lambda p: p, {"rate": 60.0}, ["at 50 Hz, but rate = 60 Hz"]),
     "a clock that stops": (
         lambda p: cells(p, 9, lambda c: ["", *c[1:]]), {}, ["column 'time', row 9: the time is mi"],
@@ -107,6 +132,18 @@ def test_what_cannot_be_read_is_one_sentence(tmp_path, made, damage, options, wo
     assert "\n" not in text and all(word in text for word in words), text
     if "rate" not in options or options["rate"] > 0:
         assert str(path) in text
+
+
+@pytest.mark.parametrize("markers", [{}, ""])
+def test_no_marker_at_all_is_one_sentence(tmp_path, made, markers):
+    with pytest.raises(ValueError, match=f"^markers = {markers!r}: name at least one marker"):
+        read_recording(csv(tmp_path, made), quiet=True, markers=markers)
+
+
+def test_markers_that_a_format_names_itself_are_not_named_again(tmp_path, made):
+    path = files.motive(tmp_path / "film.csv", *made)
+    with pytest.raises(ValueError, match="markers = 'a': a file of this format names its markers"):
+        read_recording(path, quiet=True, input="motor.x", markers="a")
 
 
 def turned(lines):

@@ -52,6 +52,14 @@ BAD = {
     "too short to score": (
         {"scene": {"duration": 0.5}}, ["scene.duration", "0.5 s", "horizon of 1 s", "3.2 s"],
     ),
+    "blank before a name": (
+        {"webs": {"networks": [{"name": " 007", "fibres": [[[0.0, 0.0], [1.0, 0.0]]]}]}},
+        ["webs.networks.0.name", "' 007'", "without blanks at its ends"],
+    ),
+    "no marker": (
+        {"recordings": [{"path": "x.csv", "read": {"markers": {}}}]},
+        ["recordings.0.read.markers = {}", "name at least one marker"],
+    ),
     "no such accuracy": (
         {"numerics": {"accuracy": "ultra"}}, ["numerics.accuracy", "'ultra'", "'fine'"],
     ),

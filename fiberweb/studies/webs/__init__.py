@@ -5,13 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from fiberweb.model.network import Network, web
 from fiberweb.model.scene import Finite
 from fiberweb.sections import Positive, Section, Some, key
 from fiberweb.studies.base import Figure, Lab, Point, Table, every, input_baselines
 
+
+def _legible(name: str) -> str:
+    """A name that a table and a figure can show."""
+    if name != name.strip() or not name.isprintable():
+        raise PydanticCustomError(  # its sentence begins with the key and the value
+            "name", "give a name without control characters, and without blanks at its ends"
+        )
+    return name
+
+
+Name = Annotated[str, AfterValidator(_legible)]
 Place = Annotated[list[Finite], Field(min_length=2, max_length=2)]
 Fibre = Annotated[list[Place], Field(min_length=2, max_length=2)]
 
@@ -19,7 +31,7 @@ Fibre = Annotated[list[Place], Field(min_length=2, max_length=2)]
 class WebSection(Section):
     """One network of straight fibres."""
 
-    name: str = key(..., "of the network, in table and figure", min_length=1)
+    name: Name = key(..., "of the network, in table and figure", min_length=1)
     fibres: Some[Fibre] = key(..., "near and far end of each fibre, [[x, y], [x, y]]", "m")
     driven_fibre: Annotated[int, Field(ge=0)] = key(0, "number of the fibre that is shaken, from 0")
     driven_distance: Positive | None = key(

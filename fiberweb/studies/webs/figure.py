@@ -50,7 +50,7 @@ def _schematic(ax: Axes, each: Mapping) -> None:
     ends = drawn.fibres.reshape(-1, 2)
     middle, half = 0.5 * (ends.min(axis=0) + ends.max(axis=0)), 0.52 * drawn.length
     ax.set(xlim=middle[0] + np.array([-half, half]), ylim=middle[1] + np.array([-half, half]))
-    ax.set_title(each["name"])
+    ax.set_title(style.verbatim(each["name"]))
 
 
 def _capacity(ax: Axes, rows: pd.DataFrame, baselines: pd.DataFrame, name: str) -> None:
@@ -58,7 +58,7 @@ def _capacity(ax: Axes, rows: pd.DataFrame, baselines: pd.DataFrame, name: str) 
     rows = rows.assign(place=np.arange(len(rows)))
     plots.points(ax, rows, "place", name, marker="o", ms=4, ls="", color=style.INK, capsize=2.5)
     plots.mark_unstable(ax, rows, "place")
-    ax.set_xticks(rows["place"], rows.index)
+    ax.set_xticks(rows["place"], [style.verbatim(name) for name in rows.index])
     ax.set_xlim(-0.5, len(rows) - 0.5)
     plots.scale(ax, rows, baselines, name)
     plots.baselines(ax, baselines, name)
