@@ -31,3 +31,13 @@ def damaged(draw, content: bytes, tokens: list[bytes]) -> bytes:
         )
         content = content[:at] + put + content[rest:]
     return content
+
+
+# in a small process of its own: a child of a large one counts that one's memory as once its own
+USED = """
+import resource, subprocess, sys
+ended = subprocess.run(sys.argv[1:])
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, file=open("used", "w"))
+sys.exit(ended.returncode)
+"""

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from fiberweb.untrusted import guard
+from tests.fuzz.cases import USED
 from tests.fuzz.hostile import HOSTILE, LAUGHS
 from tests.workflow.conftest import within_a_call
 
@@ -16,16 +17,6 @@ SECONDS, MEGABYTES = 2.0, 500  # of CPU time beyond a call that does nothing, an
 OBEYED = b"""__use_yte__: true
 __definitions__: ["import os; os.mkdir('harm')"]
 results: ?os.mkdir('harm')
-"""
-
-
-# in a small process of its own: a child of a large one counts that one's memory as once its own
-USED = """
-import resource, subprocess, sys
-ended = subprocess.run(sys.argv[1:])
-used = resource.getrusage(resource.RUSAGE_CHILDREN)
-print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, file=open("used", "w"))
-sys.exit(ended.returncode)
 """
 
 
