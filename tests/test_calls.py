@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from subprocess import CompletedProcess as ended
 
 import pytest
 
@@ -71,6 +72,27 @@ def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time
     monkeypatch.setattr(subprocess, "run", run)
     assert resume.main() == 1
     assert given == [(shell, shell)]
+
+
+@pytest.mark.parametrize("looked", [["--dry-run"], ["--dryr"], ["-n"], ["-pn"], ["--unlock"]])
+def test_a_call_that_only_looks_is_not_the_end_of_it(folder, monkeypatch, looked):
+    note = begun("figures", "--cores", "2")
+    monkeypatch.setattr(subprocess, "run", lambda command, **_: ended(command, 0))
+    monkeypatch.setattr("sys.argv", ["resume", *looked])
+    assert resume.main() == 0 and note.exists()
+    monkeypatch.setattr("sys.argv", ["resume", "--cores", "8"])
+    assert resume.main() == 0 and not note.exists()
+
+
+def test_options_are_added_before_targets_that_stand_alone(folder, monkeypatch):
+    begun("--config", "a=1", "--", "figures")
+    calls.SNAKEMAKES.mkdir(parents=True)
+    given = []
+    monkeypatch.setattr(subprocess, "run", lambda command, **_: ended(given.append(command[3:]), 0))
+    monkeypatch.setattr("sys.argv", ["resume", "--cores", "8"])
+    assert resume.main() == 0
+    call = ["--config", "a=1", "--cores", "8"]
+    assert given == [[*call, "--unlock", "--", "figures"], [*call, "--", "figures"]]
 
 
 def test_jobs_in_the_queue_of_a_cluster_are_at_work(folder, monkeypatch):
