@@ -23,15 +23,19 @@ SNAKEMAKES = Path(".snakemake", "locks")
 _held = []  # locks, until this process ends
 
 
-def begin(arguments: Sequence[str]) -> Path:
-    """Note a call of Snakemake, by its arguments, that starts; the note, to be removed when all of
-    it is done."""
+def begin(arguments: Sequence[str], directory: str | Path | None = None) -> Path:
+    """Note a call of Snakemake that starts; the note, to be removed when all of it is done.
+
+    Args:
+        arguments: of the call.
+        directory: what Snakemake took as `--directory`, which profiles may name as well.
+    """
     join()
     name = hashlib.sha256(repr([*arguments]).encode()).hexdigest()[:16]
     call = {
         "arguments": [*arguments],
-        # `--directory` leads elsewhere, and the files that the call names are seen from here
-        "from": os.environ.get("PWD", os.getcwd()) if _elsewhere(arguments) else os.getcwd(),
+        # it leads elsewhere, and the files that the call names are seen from here
+        "from": os.getcwd() if directory is None else os.environ.get("PWD", os.getcwd()),
         "process": os.getpid(),
         "host": platform.node(),
     }
@@ -116,10 +120,6 @@ def _queued(call: dict, folder: str) -> list[str]:
     return [
         number for number, _, where in (line.partition(" ") for line in lines) if where == folder
     ]
-
-
-def _elsewhere(arguments: Sequence[str]) -> bool:
-    return any(given.split("=")[0] in ("--directory", "-d") for given in arguments)
 
 
 def _holders(path: Path) -> list[int]:

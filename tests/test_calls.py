@@ -22,9 +22,9 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def begun(*arguments):
+def begun(*arguments, directory=None):
     """The note of a call that has ended since."""
-    note = calls.begin(arguments)
+    note = calls.begin(arguments, directory)
     calls._held.clear()
     return note
 
@@ -62,7 +62,7 @@ def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time
     """With `--directory`, Snakemake works in another folder than the one of the shell."""
     shell, given = str(tmp_path_factory.mktemp("shell")), []
     monkeypatch.setenv("PWD", shell)
-    begun("figures", "--directory", str(folder), "--configfile", "my.yaml")
+    begun("figures", f"-d{folder}", "--configfile", "my.yaml", directory=folder)
     monkeypatch.setenv("PWD", str(folder))  # where it is resumed from
 
     def run(command, cwd, env):
