@@ -20,6 +20,7 @@ from pathlib import Path
 
 FOLDER = Path(".snakemake", "fiberweb")  # of the folder that Snakemake works in
 SNAKEMAKES = Path(".snakemake", "locks")
+KINDS = {"arguments": list, "from": str, "process": int, "host": str}  # what a note holds
 _held = []  # locks, until this process ends
 
 
@@ -104,10 +105,18 @@ def _notes() -> list[tuple[Path, dict]]:
     found = []
     for note in FOLDER.glob("*.json"):
         try:
-            found.append((note, json.loads(note.read_text(encoding="utf-8"))))
-        except ValueError:  # cut short, as by a full disk
+            found.append((note, _read(note)))
+        except ValueError:  # cut short, as by a full disk, or written by something else
             note.unlink()
     return found
+
+
+def _read(note: Path) -> dict:
+    """What a note says; ValueError if `begin` does not write such."""
+    call = json.loads(note.read_text(encoding="utf-8"))
+    if not isinstance(call, dict) or {key: type(call.get(key)) for key in KINDS} != KINDS:
+        raise ValueError(f"{note} is no note of a call")
+    return call | {"arguments": [*map(str, call["arguments"])]}
 
 
 def _queued(call: dict, folder: str) -> list[str]:

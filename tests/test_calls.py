@@ -52,8 +52,13 @@ def test_the_last_call_that_did_not_end_well(folder):
     second.unlink()  # as after it ended well
     assert calls.unfinished()[1]["arguments"] == ["figures"]
     assert begun("figures") == first
-    first.write_text("{")  # of a disk that was full
-    assert calls.unfinished() is None
+
+
+@pytest.mark.parametrize("text", ["{", "[]", "5", '{"arguments": []}', '{"arguments": null}'])
+def test_a_note_that_says_nothing_is_none(folder, text):
+    note = begun("figures")
+    note.write_text(text)  # `{`: of a disk that was full
+    assert calls.unfinished() is None and not note.exists()
 
 
 def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time(
