@@ -81,7 +81,7 @@ onstart:
     logger.addHandler(workflow.progress)
     # commit and versions, of no use to a rule: they must not change tables nor cause reruns
     add_call(RESULTS, workflow.config_settings.configfiles)
-    workflow.call = calls.begin(sys.argv[1:])
+    workflow.call = calls.begin(sys.argv[1:], workflow.overwrite_workdir)
 
 
 onsuccess:

@@ -20,18 +20,23 @@ from pathlib import Path
 
 FOLDER = Path(".snakemake", "fiberweb")  # of the folder that Snakemake works in
 SNAKEMAKES = Path(".snakemake", "locks")
+KINDS = {"arguments": list, "from": str, "process": int, "host": str}  # what a note holds
 _held = []  # locks, until this process ends
 
 
-def begin(arguments: Sequence[str]) -> Path:
-    """Note a call of Snakemake, by its arguments, that starts; the note, to be removed when all of
-    it is done."""
+def begin(arguments: Sequence[str], directory: str | Path | None = None) -> Path:
+    """Note a call of Snakemake that starts; the note, to be removed when all of it is done.
+
+    Args:
+        arguments: of the call.
+        directory: what Snakemake took as `--directory`, which profiles may name as well.
+    """
     join()
     name = hashlib.sha256(repr([*arguments]).encode()).hexdigest()[:16]
     call = {
         "arguments": [*arguments],
-        # `--directory` leads elsewhere, and the files that the call names are seen from here
-        "from": os.environ.get("PWD", os.getcwd()) if _elsewhere(arguments) else os.getcwd(),
+        # it leads elsewhere, and the files that the call names are seen from here
+        "from": os.getcwd() if directory is None else os.environ.get("PWD", os.getcwd()),
         "process": os.getpid(),
         "host": platform.node(),
     }
@@ -100,10 +105,18 @@ def _notes() -> list[tuple[Path, dict]]:
     found = []
     for note in FOLDER.glob("*.json"):
         try:
-            found.append((note, json.loads(note.read_text(encoding="utf-8"))))
-        except ValueError:  # cut short, as by a full disk
+            found.append((note, _read(note)))
+        except ValueError:  # cut short, as by a full disk, or written by something else
             note.unlink()
     return found
+
+
+def _read(note: Path) -> dict:
+    """What a note says; ValueError if `begin` does not write such."""
+    call = json.loads(note.read_text(encoding="utf-8"))
+    if not isinstance(call, dict) or {key: type(call.get(key)) for key in KINDS} != KINDS:
+        raise ValueError(f"{note} is no note of a call")
+    return call | {"arguments": [*map(str, call["arguments"])]}
 
 
 def _queued(call: dict, folder: str) -> list[str]:
@@ -116,10 +129,6 @@ def _queued(call: dict, folder: str) -> list[str]:
     return [
         number for number, _, where in (line.partition(" ") for line in lines) if where == folder
     ]
-
-
-def _elsewhere(arguments: Sequence[str]) -> bool:
-    return any(given.split("=")[0] in ("--directory", "-d") for given in arguments)
 
 
 def _holders(path: Path) -> list[int]:

@@ -135,8 +135,14 @@ def load(*layers: Mapping | str | Path) -> Config:
 def check_folders(config: Config) -> None:
     """Raise ValueError if results cannot be written or the authors' tables are not there."""
     results = Path(config.results)
+    above = (results, *results.parents)
+    if link := next((path for path in above if path.is_symlink() and not path.exists()), None):
+        raise ValueError(
+            f"results = {config.results!r} cannot be written (the link {link} leads nowhere): name "
+            "a folder that can, or make what it leads to"
+        )
     try:
-        there = next(path for path in (results, *results.parents) if path.exists())
+        there = next(path for path in above if path.exists())
         if disk := missing_disk(results):
             raise ValueError(
                 f"results = {config.results!r} is on a disk that is not mounted: mount {disk}, or "

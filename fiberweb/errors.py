@@ -33,6 +33,25 @@ def unknown_key(key: str, known, where: str = "", kind: str = "key") -> str:
     return f"unknown {kind} '{where}{key}': the nearest valid {kind} is '{where}{near[0]}'"
 
 
+class Named(dict):
+    """Things by their names; one that is not there is refused in a sentence.
+
+    Args:
+        kind: what they are, such as "run".
+    """
+
+    def __init__(self, kind: str):
+        super().__init__()
+        self.kind = kind
+
+    def __missing__(self, name: str):
+        near = get_close_matches(name, self, n=1) or [*self][:1]
+        such = f", such as {near[0]}" if near else ""
+        raise ValueError(
+            f"there is no {self.kind} {name!r} in this config: it has {len(self)}{such}"
+        )
+
+
 def sentence(error, where: str = "", known=()) -> str:
     """The first problem of a pydantic ValidationError as one sentence.
 

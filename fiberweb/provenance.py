@@ -69,7 +69,10 @@ def _write(path: Path, text: str) -> None:
 def _earlier(path: Path) -> list[dict]:
     """The calls so far; a file that is broken is set aside."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        calls = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(calls, list) or not all(isinstance(call, dict) for call in calls):
+            raise ValueError(f"{path} is no list of calls")
+        return calls
     except FileNotFoundError:
         return []
     except ValueError:

@@ -12,6 +12,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import BeforeValidator
 
+from fiberweb.errors import Named
 from fiberweb.folders import folder
 from fiberweb.recordings import READERS
 from fiberweb.recordings.options import Reading
@@ -47,7 +48,7 @@ def recorded(sections: Iterable[RecordingSection]) -> dict[str, Recorded]:
     Raises:
         ValueError: two have one name, one is too long, or a folder has no recording; one sentence.
     """
-    found: dict[str, Recorded] = {}
+    found: dict[str, Recorded] = Named("recording")
     for section in sections:
         read, card = (part.model_dump(exclude_unset=True) for part in (section.read, section.card))
         for name, path in _files(section):

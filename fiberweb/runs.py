@@ -16,6 +16,7 @@ from functools import cached_property
 
 from fiberweb import studies
 from fiberweb.config import Config, lab
+from fiberweb.errors import Named
 from fiberweb.model.authors import SKIPPED_FRAMES
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.limits import check_frames
@@ -209,7 +210,7 @@ def run_table(config: Config) -> dict[str, Run]:
     Raises:
         ValueError: two scenes have one name, or there are too many.
     """
-    table: dict[str, Run] = {}
+    table: dict[str, Run] = Named("run")
     asked = Asked()
     for study in studies.STUDIES:
         for setup in studies.setups(study):

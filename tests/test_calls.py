@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from subprocess import CompletedProcess as ended
 
 import pytest
 
@@ -21,9 +22,9 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def begun(*arguments):
+def begun(*arguments, directory=None):
     """The note of a call that has ended since."""
-    note = calls.begin(arguments)
+    note = calls.begin(arguments, directory)
     calls._held.clear()
     return note
 
@@ -51,8 +52,13 @@ def test_the_last_call_that_did_not_end_well(folder):
     second.unlink()  # as after it ended well
     assert calls.unfinished()[1]["arguments"] == ["figures"]
     assert begun("figures") == first
-    first.write_text("{")  # of a disk that was full
-    assert calls.unfinished() is None
+
+
+@pytest.mark.parametrize("text", ["{", "[]", "5", '{"arguments": []}', '{"arguments": null}'])
+def test_a_note_that_says_nothing_is_none(folder, text):
+    note = begun("figures")
+    note.write_text(text)  # `{`: of a disk that was full
+    assert calls.unfinished() is None and not note.exists()
 
 
 def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time(
@@ -61,7 +67,7 @@ def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time
     """With `--directory`, Snakemake works in another folder than the one of the shell."""
     shell, given = str(tmp_path_factory.mktemp("shell")), []
     monkeypatch.setenv("PWD", shell)
-    begun("figures", "--directory", str(folder), "--configfile", "my.yaml")
+    begun("figures", f"-d{folder}", "--configfile", "my.yaml", directory=folder)
     monkeypatch.setenv("PWD", str(folder))  # where it is resumed from
 
     def run(command, cwd, env):
@@ -71,6 +77,27 @@ def test_the_files_that_a_call_names_are_seen_from_where_it_was_given_every_time
     monkeypatch.setattr(subprocess, "run", run)
     assert resume.main() == 1
     assert given == [(shell, shell)]
+
+
+@pytest.mark.parametrize("looked", [["--dry-run"], ["--dryr"], ["-n"], ["-pn"], ["--unlock"]])
+def test_a_call_that_only_looks_is_not_the_end_of_it(folder, monkeypatch, looked):
+    note = begun("figures", "--cores", "2")
+    monkeypatch.setattr(subprocess, "run", lambda command, **_: ended(command, 0))
+    monkeypatch.setattr("sys.argv", ["resume", *looked])
+    assert resume.main() == 0 and note.exists()
+    monkeypatch.setattr("sys.argv", ["resume", "--cores", "8"])
+    assert resume.main() == 0 and not note.exists()
+
+
+def test_options_are_added_before_targets_that_stand_alone(folder, monkeypatch):
+    begun("--config", "a=1", "--", "figures")
+    calls.SNAKEMAKES.mkdir(parents=True)
+    given = []
+    monkeypatch.setattr(subprocess, "run", lambda command, **_: ended(given.append(command[3:]), 0))
+    monkeypatch.setattr("sys.argv", ["resume", "--cores", "8"])
+    assert resume.main() == 0
+    call = ["--config", "a=1", "--cores", "8"]
+    assert given == [[*call, "--unlock", "--", "figures"], [*call, "--", "figures"]]
 
 
 def test_jobs_in_the_queue_of_a_cluster_are_at_work(folder, monkeypatch):

@@ -52,6 +52,19 @@ def test_results_need_a_folder():
     assert load({"published_tables": ""}).published_tables == ""
 
 
+@pytest.mark.parametrize("leads", ["gone", "out"])  # nowhere, and to itself
+@pytest.mark.parametrize("within", ["", "deeper"])
+def test_a_link_that_leads_nowhere(tmp_path, leads, within):
+    link = tmp_path / "out"
+    link.symlink_to(tmp_path / leads)
+    with pytest.raises(ValueError, match=f"cannot be written .the link {link} leads nowhere"):
+        check_folders(load({"results": str(link / within)}))
+    (tmp_path / "gone").mkdir()
+    link.unlink()
+    link.symlink_to(tmp_path / "gone")
+    check_folders(load({"results": str(link / within)}))
+
+
 @pytest.mark.parametrize("path", ["disk/out", "me/disk/out", "disk"])
 def test_a_disk_that_is_not_mounted(monkeypatch, tmp_path, path):
     monkeypatch.setattr(folders, "MOUNTS", (tmp_path,))

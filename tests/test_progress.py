@@ -118,3 +118,23 @@ def test_expected_cost_is_about_that_of_the_plan(n, setup, force):
 )
 def test_spans_are_said_as_people_do(seconds, said):
     assert progress.span(seconds) == said
+
+
+KILLED = {"line": "", "pid": 1, "command": ["snakemake"], "ended": "", "begun": 0.0, "at": 0.0}
+
+
+@pytest.mark.parametrize(
+    "text", ["5", "{}", "[]", "{", "null", *(json.dumps(KILLED | d) for d in (
+        {"pid": -1}, {"pid": "x"}, {"at": 1e300}, {"line": 5}, {"command": 5})
+    )],
+)  # fmt: skip
+def test_a_damaged_file_is_named(tmp_path, text):
+    (tmp_path / progress.FILE).write_text(text)
+    with pytest.raises(ValueError, match=f"^{tmp_path / progress.FILE} is not as a call writes it"):
+        status(tmp_path)
+
+
+def test_a_file_is_no_folder(tmp_path):
+    (tmp_path / "README.md").touch()
+    with pytest.raises(ValueError, match=r"cannot be read \(Not a directory\): name the folder"):
+        status(tmp_path / "README.md")

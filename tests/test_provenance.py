@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from fiberweb.provenance import add_call
 from fiberweb.source import source_hash
 
@@ -28,6 +30,16 @@ def test_a_broken_list_is_set_aside_with_a_sentence(tmp_path, capsys):
     assert len(json.loads(path.read_text())) == 1
     assert f"{path} is broken" in capsys.readouterr().err
     assert len(path.with_suffix(".broken").read_text()) == 100
+
+
+@pytest.mark.parametrize("text", ["null", "[1]", "{}", "5", '"calls"'])
+def test_what_is_no_list_of_calls_is_set_aside(tmp_path, capsys, text):
+    path = tmp_path / "provenance.json"
+    path.write_text(text)
+    add_call(tmp_path)
+    assert len(json.loads(path.read_text())) == 1
+    assert f"{path} is broken" in capsys.readouterr().err
+    assert path.with_suffix(".broken").read_text() == text
 
 
 def test_the_commit_is_that_of_the_code(tmp_path, monkeypatch):

@@ -58,3 +58,8 @@ def test_a_name_leads_to_no_other_folder(tmp_path, given, name):
 def test_a_name_is_no_longer_than_that_of_a_folder_can_be(tmp_path):
     with pytest.raises(ValueError, match="is longer than the name of a folder can be"):
         of({"path": str(tmp_path / "a.csv"), "name": "é" * 121})
+
+
+def test_a_recording_that_is_not_listed_is_refused():
+    with pytest.raises(ValueError, match=r"there is no recording 'nope' in this config: it has 0$"):
+        recorded([])["nope"]

@@ -306,9 +306,12 @@ class Scene:
 
     @classmethod
     def from_json(cls, text: str) -> Scene:
-        """The scene that `to_json` wrote."""
-        values = json.loads(text)
-        return cls(from_spec(values.pop("network")), **values)
+        """The scene that `to_json` wrote; ValueError for any other text."""
+        try:
+            values = json.loads(text)
+            return cls(from_spec(values.pop("network")), **values)
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError(f"{shown(text)} is no scene as `Scene.to_json` writes it") from error
 
 
 _ADAPTERS = {

@@ -10,6 +10,8 @@ another source of the engine or other versions, is printed first.
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Mapping
+from os.path import isfile  # of a name that no disk takes as well
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -17,6 +19,7 @@ import numpy as np
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
+from fiberweb.errors import brief
 from fiberweb.model.scene import Scene
 from fiberweb.scoring.capacity import score
 from fiberweb.simulation import dataset
@@ -25,8 +28,18 @@ from fiberweb.simulation.simulate import run
 
 MADE_BY = ("engine_source", "versions")
 SCORED_BY = ("scoring_versions",)
-SCORING = ("scoring", "alpha", "horizon", "split", "skip", "shuffle", "overshoot")
 AUTHORS = "authors"  # what a file says of the mesh that the published setup fixes
+# what is read of a response and of its capacities, and how
+SIMULATED = {
+    "scene": Scene.from_json,
+    "engine": str,
+    "time_step": float,
+    "elements_per_section": lambda given: None if str(given) == AUTHORS else int(given),
+}
+SCORED = {
+    "scoring": str, "alpha": float, "horizon": float, "split": float, "skip": int, "shuffle": bool,
+    "overshoot": lambda given: tuple(map(float, given)),
+}  # fmt: skip
 
 
 def response_of(asked: str, results: str | Path = "results") -> Path:
@@ -37,40 +50,56 @@ def response_of(asked: str, results: str | Path = "results") -> Path:
     """
     given = Path(asked)
     named = Path(results, "runs", asked)
-    places = [given.with_name("response.nc")] if given.is_file() else []
+    places = [given.with_name("response.nc")] if isfile(given) else []
     places += [given / "response.nc", named / "response.nc"]
     for place in places:
-        if place.is_file():
+        if isfile(place):
             return place
     raise ValueError(
-        f"RUN = {asked!r} is no file, no folder with a response.nc and no run of {results}: give "
-        "the path of a response.nc"
+        f"RUN = {brief(asked)} is no file, no folder with a response.nc and no run of "
+        f"{results}: give the path of a response.nc"
     )
+
+
+def attributes(kept: xr.Dataset, path: Path, reads: Mapping[str, Callable]) -> dict:
+    """Attributes of a file, each as its function reads it.
+
+    Raises:
+        ValueError: one is missing or damaged; one sentence.
+    """
+    read = {}
+    for key, as_meant in reads.items():
+        if key not in kept.attrs:
+            raise ValueError(f"{path} has no attribute {key!r}: it is no file of a simulation")
+        try:
+            read[key] = as_meant(kept.attrs[key])
+        except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
+            raise ValueError(f"{path}: its attribute {key} cannot be read: {error}") from error
+    return read
 
 
 def repeated(kept: xr.Dataset, path: Path) -> xr.Dataset:
     """The response that the attributes of another one ask for.
 
     Raises:
-        ValueError: it is no simulation of this project, such as a recording; one sentence.
+        ValueError: it is no simulation of this project, such as a recording, or damaged; one
+            sentence.
     """
-    given = kept.attrs
-    for key in ("scene", "engine", "time_step", "elements_per_section"):
-        if key not in given:
-            raise ValueError(f"{path} has no attribute {key!r}: it is no simulated response")
-    elements = given["elements_per_section"]
-    numerics = {"elements_per_section": None if elements == AUTHORS else int(elements)}
-    numerics |= {"engine": given["engine"], "time_step": float(given["time_step"])}
-    planned = plan(Scene.from_json(given["scene"]), force_time_step=True, **numerics)
+    numerics = attributes(kept, path, SIMULATED)
+    try:
+        planned = plan(numerics.pop("scene"), force_time_step=True, **numerics)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
     return run(planned)
 
 
-def scored(response: xr.Dataset, kept: xr.Dataset) -> xr.Dataset:
-    """The capacities that the attributes of others ask for."""
-    given = {key: kept.attrs[key] for key in SCORING}
-    given |= {"overshoot": tuple(map(float, given["overshoot"]))}
-    given |= {"shuffle": bool(given["shuffle"]), "skip": int(given["skip"])}
-    return score(response, orders=kept.sizes["order"], **given)
+def scored(response: xr.Dataset, kept: xr.Dataset, path: Path) -> xr.Dataset:
+    """The capacities that the attributes of others ask for; errors as for `repeated`."""
+    options = attributes(kept, path, SCORED)
+    try:
+        return score(response, orders=kept.sizes.get("order", 0), **options)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
 
 
 def apart(kept: xr.Dataset, again: xr.Dataset) -> list[str]:
@@ -95,7 +124,7 @@ def reproduce(path: Path) -> bool:
     agrees; whether all does."""
     kept = dataset.load(path)
     response = repeated(kept, path)
-    print(f"{path}: {kept.attrs['engine']}, {kept.sizes['time']} frames")
+    print(f"{path}: {kept.attrs['engine']}, {kept.sizes.get('time', 0)} frames")
     _tell_makers(kept, response, MADE_BY)
     with TemporaryDirectory() as folder:
         # by way of a file, since a file rounds motions
@@ -106,9 +135,9 @@ def reproduce(path: Path) -> bool:
     if scores.exists():
         before = dataset.load(scores)
         with threadpool_limits(1):  # as in the workflow: more would add in another order
-            after = scored(again, before)
+            after = scored(again, before, scores)
         _tell_makers(before, after, SCORED_BY)
-        for name in ("c_nl", "c_m"):
+        for name in [name for name in ("c_nl", "c_m") if name in before]:
             print(f"{name}: {float(before[name]):.10g}, again {float(after[name]):.10g}")
         same &= _told(scores.name, apart(before, after))
     return same
@@ -116,7 +145,7 @@ def reproduce(path: Path) -> bool:
 
 def _tell_makers(kept: xr.Dataset, again: xr.Dataset, keys: tuple[str, ...]) -> None:
     for key in keys:
-        if (was := kept.attrs.get(key)) != (now := again.attrs[key]):
+        if (was := str(kept.attrs.get(key))) != (now := str(again.attrs[key])):
             print(f"{key} was {was}, and is {now} here: other digits are no surprise")
 
 

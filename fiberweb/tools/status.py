@@ -18,13 +18,25 @@ def status(results: str | Path) -> str:
     """A line or two: how far a call is and when it will be finished, or how the last one ended.
 
     Raises:
-        ValueError: no call has written there.
+        ValueError: no call has written there, or it is damaged; one sentence.
     """
     path = Path(results) / FILE
     try:
-        state = json.loads(path.read_text(encoding="utf-8"))
+        return _told(json.loads(path.read_text(encoding="utf-8")))
     except FileNotFoundError:
         raise ValueError(f"{path} is not there: no workflow has begun to write to it") from None
+    except OSError as error:
+        raise ValueError(
+            f"{path} cannot be read ({error.strerror}): name the folder of the results"
+        ) from None
+    except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
+        raise ValueError(
+            f"{path} is not as a call writes it ({type(error).__name__}: {error}): the next call "
+            "writes it anew"
+        ) from error
+
+
+def _told(state: dict) -> str:
     if _alive(state):
         return f"{state['line']} (as of {clock(state['at'])})"
     command = " ".join(["snakemake", *state["command"][1:]])

@@ -33,6 +33,26 @@ def test_reference_force_and_buckling_number():
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "[1,2]",
+        "5",
+        "{}",
+        '{"a":',
+        "",
+        5,
+        None,
+        '{"network": "x"}',
+        '{"network": {}}',
+        '{"network": 1}',
+    ],
+)
+def test_what_is_no_scene_is_refused(text):
+    with pytest.raises(ValueError):
+        Scene.from_json(text)
+
+
+@pytest.mark.parametrize(
     ("setup", "network"),
     [
         ("described", HATCH),

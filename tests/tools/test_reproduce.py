@@ -88,12 +88,46 @@ def test_a_recording_is_refused(run, tmp_path):
     kept = dataset.load(path)
     del kept.attrs["scene"]
     dataset.save(kept, path)
-    with pytest.raises(ValueError, match=r"response\.nc has no attribute 'scene': it is no simul"):
+    with pytest.raises(
+        ValueError, match=r"response\.nc has no attribute 'scene': it is no file of"
+    ):
         reproduce.reproduce(path)
 
 
+SCENE, SECTIONS = "its attribute scene cannot be", "its attribute elements_per_section cannot be"
+DAMAGED = [
+    ("response", {"scene": "[1,2]"}, f"{SCENE} read: '.1,2.' is no scene"),
+    ("response", {"scene": '{"a":'}, SCENE), ("response", {"scene": 5}, SCENE),
+    ("response", {"elements_per_section": "many"}, f"{SECTIONS} read: .*'many'"),
+    ("response", {"elements_per_section": [1, 2]}, SECTIONS),
+    ("response", {"engine": "nope"}, "engine = 'nope'"),
+    ("capacity", {"alpha": None}, "has no attribute 'alpha'"),
+    ("capacity", {"overshoot": 1.0}, "its attribute overshoot cannot be read"),
+    ("capacity", {"split": 7.0}, "split = 7"),
+]  # fmt: skip
+
+
+def test_damaged_attributes_are_named_with_their_file(run):
+    folder = run("described")
+    kept = {name: dataset.load(folder / f"{name}.nc") for name in ("response", "capacity")}
+    for name, damaged, said in DAMAGED:
+        broken = kept[name].copy()
+        broken.attrs = {k: v for k, v in (broken.attrs | damaged).items() if v is not None}
+        with pytest.raises(ValueError, match=f"^{name}.nc:? {said}"):
+            if name == "response":
+                reproduce.repeated(broken, f"{name}.nc")
+            else:
+                reproduce.scored(kept["response"], broken, f"{name}.nc")
+
+
 @pytest.mark.parametrize(
-    ("asked", "code"), [(["published"], 0), (["nothing"], "no file"), ([], "RUN is missing")]
+    ("asked", "code"),
+    [
+        (["published"], 0),
+        (["nothing"], "no file"),
+        (["x" * 5000], "no file"),
+        ([], "RUN is missing"),
+    ],
 )
 def test_the_command_ends_with_what_came_out(run, tmp_path, monkeypatch, asked, code):
     run("published")

@@ -476,3 +476,11 @@ def test_the_example_is_8x8_or_the_nearest_crosshatch():
     assert chosen([2, 8, 12], [6]) == ("crosshatch", 8)
     assert chosen([2, 4], [8]) == ("crosshatch", 4)
     assert chosen([], [6, 12]) == ("polygon", 6)
+
+
+def test_a_run_that_is_not_there_is_refused():
+    table = run_table(load(PAPER))
+    name = next(iter(table))
+    with pytest.raises(ValueError, match=f"^there is no run '{name}x' .* such as {name}$"):
+        table[f"{name}x"]
+    assert table.get("nope") is None and "nope" not in table
