@@ -81,7 +81,7 @@ fuzz: $(STAMP) ## ten thousand configs and ten thousand recordings, most of them
 random_scenes: $(STAMP) ## what becomes of 10 000 random scenes: 6 minutes
 	$(VENV)/bin/python -m fiberweb.tools.random_scenes
 
-test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: 45 minutes
+test-faults: $(STAMP) ## what is killed, full, damaged or shared, for real: 40 minutes
 	FAULTS=1 $(VENV)/bin/python -m pytest --numprocesses $(CORES) -rs tests/faults
 
 test-slurm: $(STAMP_SLURM) ## the workflow through a SLURM on this machine: Debian, as root

@@ -31,8 +31,12 @@ def check_call() -> None:
     Of ``--config 'scene={duration: 20, duration: 30}'`` Snakemake would keep the last one. Groups
     given in two parts are one group.
     """
+    try:
+        entries = called().config or ()
+    except LookupError:
+        return  # a library's call has no command line
     given = set()
-    for entry in called().config or ():
+    for entry in entries:
         check_entry(entry)
         for key in _keys(entry):
             if key in given:

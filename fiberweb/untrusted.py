@@ -42,6 +42,9 @@ def called() -> argparse.Namespace:
 
     Its own parser alone knows options that are abbreviated or written in one (``-nC``), and takes
     .3 s to be made once more; so what it gave is looked for in the frames of Snakemake's functions.
+
+    Raises:
+        LookupError: there is none, as where Snakemake is used as a library.
     """
     frame = sys._getframe()
     while frame:
@@ -49,7 +52,7 @@ def called() -> argparse.Namespace:
         if isinstance(found, argparse.Namespace) and hasattr(found, "configfile"):
             return found
         frame = frame.f_back
-    raise RuntimeError("no call of Snakemake's command line is at work")
+    raise LookupError("no call of Snakemake's command line is at work")
 
 
 def values(path: str | Path) -> object:

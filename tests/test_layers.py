@@ -4,6 +4,7 @@ import pytest
 
 from fiberweb.config import load
 from fiberweb.layers import check_call, read, typed
+from fiberweb.untrusted import called
 from tests.workflow.conftest import within_a_call
 
 TWICE = {
@@ -82,3 +83,9 @@ def test_groups_in_parts_and_other_options_are_no_key_twice():
     call = ["--config", "scene={seed: 1}", "scene={duration: 2}", "results={a", "n=[1, 1]"]
     others = ("--set-threads", "simulate=2", "--set-resources", "simulate:mem_mb=2")
     within_a_call(check_call, [*call, *others])
+
+
+def test_snakemake_as_a_library_has_no_command_line_to_check():
+    with pytest.raises(LookupError):
+        called()
+    assert check_call() is None

@@ -137,8 +137,9 @@ def reproduce(path: Path) -> bool:
         with threadpool_limits(1):  # as in the workflow: more would add in another order
             after = scored(again, before, scores)
         _tell_makers(before, after, SCORED_BY)
-        for name in [name for name in ("c_nl", "c_m") if name in before]:
-            print(f"{name}: {float(before[name]):.10g}, again {float(after[name]):.10g}")
+        for name in ("c_nl", "c_m"):
+            if name in before:
+                print(f"{name}: {float(before[name]):.10g}, again {float(after[name]):.10g}")
         same &= _told(scores.name, apart(before, after))
     return same
 

@@ -73,10 +73,7 @@ def test_options_in_one_and_a_linked_snakefile_hide_nothing(tmp_path):
         (["--configfile=bomb.yaml", "--", "figures"], "10000 keys and values"),
         (["-C", f"scene={{{LAUGHS.decode().replace(chr(10), ', ')}}}"], "--config holds more than"),
         (["-nC", "scene=" + "[" * 100], "--config has more than 20 groups"),
-        (
-            ["-pkC", "scene={seed: 0x10}"],
-            "0x10, which YAML reads as hexadecimal: write",
-        ),
+        (["-pkC", "scene={seed: 0x10}"], "0x10, which YAML reads as hexadecimal: write"),
         (["--configfile", "empty.yaml"], "empty.yaml holds no keys"),
         (["--configfile", "no\nsuch.yaml"], r"'no\nsuch.yaml' is no file"),
         (["--config", "results=x", "scene=" + "[" * 100], "--config has more than 20 groups"),
